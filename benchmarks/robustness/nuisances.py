@@ -75,7 +75,7 @@ NUISANCES: dict[str, tuple[Callable[[Values, float], None], tuple[str, ...], str
     "y mirrored": (_mirrored, ("frame.wrong",), "y is mirrored"),
     "phi off by 180 deg": (_moved(phi=np.pi), ("frame.wrong",), "phi is off by 180 deg"),
     "psi off by 180 deg": (_moved(psi=np.pi), ("frame.wrong",), "psi is off by 180 deg"),
-    "platforms exchanged": (_exchanged, ("frame.wrong",), "platforms 1 and 2 are exchanged"),
+    "platforms exchanged": (_exchanged, ("frame.wrong",), "platforms 1 and 2 are swapped"),
     "clock half as fast from the middle": (_slow, ("clock.change",), ""),
     "push by 10 cm": (_pushed, ("push.robot", "push.surge"), ""),
     "`start: rest` of a robot that drives": (_moved(), ("start.running",), ""),

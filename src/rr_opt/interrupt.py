@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-MESSAGE = "Interrupted. No file was left half written."
+MESSAGE = "Interrupted. No file was left half-written."
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 

@@ -40,7 +40,7 @@ def test_checks_that_lack_an_effect_do_not_confirm_the_answer(found):
     (name,) = (use.name for use in found.robot.physics)
     known = name == "servo_lag"
     assert ("every check confirms it." in found.message) == known
-    assert (f"does not know {name}" in found.message) == (not known)
+    assert (f"does not model {name}" in found.message) == (not known)
     assert bool(found.warnings) == (not known)
     assert found.record()["driven"]["beyond_optimiser"] == ([] if known else [name])
     assert any(name in check.sentence for check in found.checks)

@@ -46,8 +46,8 @@ def test_a_refusal_reports_both_scans():
     tight = replace(PROBLEM, limits=replace(PROBLEM.limits, torque=1e-6))
     refused = rr.maximize_speed(tight)
     assert refused.status is Status.INFEASIBLE
-    assert "This rests on" in refused.message
-    assert "by another model finds none either" in refused.message
+    assert "This is based on" in refused.message
+    assert "with another model finds none either" in refused.message
 
 
 def test_limits_that_clash_need_no_scan():

@@ -24,7 +24,7 @@ def reported(run, verb, *arguments):
 def test_of_the_prototype(run, verb):
     assert reported(run, verb) == [
         "warning: No amplitude and period given. The default is driven, amplitude 0.785 rad and "
-        "period 1 s after the paper's run, and not the optimum of the prototype. Run `rr-opt "
+        "period 1 s as in the paper's run, not the optimum of the prototype. Run `rr-opt "
         "maximize-speed` first and give out/prototype/result.json, or --amplitude and --period."
     ]
     assert reported(run, verb, *BOTH) == []

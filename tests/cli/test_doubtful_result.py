@@ -31,12 +31,12 @@ def test_status_and_message(drive, verb):
     assert drive(verb, "not_converged", "The replay has another speed.") == (
         "not_converged",
         "warning: result.json: The status of this result is 'not_converged' and not 'optimal'. The "
-        "replay has another speed. Its gait is driven all the same.\n",
+        "replay has another speed. Its gait is driven anyway.\n",
     )
     assert drive(verb, ["odd"], None) == (
         "['odd']",
         "warning: result.json: The status of this result is ['odd'] and not 'optimal'. Its gait is "
-        "driven all the same.\n",
+        "driven anyway.\n",
     )
 
 
@@ -49,4 +49,4 @@ def test_a_limit_that_is_none_is_refused(run, tmp_path, row):
     (tmp_path / "result.json").write_text(json.dumps({**record, "gait": gait, "robot": robot}))
     done = run("simulate", "result.json")
     assert done.exit_code == 2
-    assert "result.json: limits: Read an entry that is no limit." in done.stderr
+    assert "result.json: limits: Read an entry that is not a limit." in done.stderr

@@ -92,8 +92,8 @@ def test_a_marker_file_with_a_layout(run, tmp_path):
     assert reported == json.loads((tmp_path / "res" / "inspection.json").read_text())
     (one,) = reported["recordings"]
     text = " ".join(one["doubts"])
-    assert "L1 and R1 have each other's names" in text
-    assert "Marker T3 is not where its platform is" in text
+    assert "L1 and R1 have swapped labels" in text
+    assert "Marker T3 does not fit its platform" in text
     assert "t = 3.21 s" in text
     assert "no data for 0.31 s" in text
     assert abs(one["markers"]["noise"] / 5e-4 - 1) < 0.05
@@ -106,7 +106,7 @@ def test_without_a_layout_it_is_estimated_and_reported(run, tmp_path):
     write_vicon(tmp_path / "run.csv")
     done = run("inspect", "run.csv", "--no-figures", "--out", "res")
     assert done.exit_code == 0, done.stderr
-    assert "The layout was learnt from the recording" in " ".join(done.stdout.split())
+    assert "The layout was estimated from the recording" in " ".join(done.stdout.split())
     assert {path.name for path in (tmp_path / "res").iterdir()} == {"inspection.json"}
 
 
@@ -137,7 +137,7 @@ def test_a_servo_s_log_is_matched(run, tmp_path):
     low, high = one["servo_log"]["phi"]["offset"]["ci95"]
     assert low - 1e-3 < 7 < high + 1e-3
     assert one["servo_log"]["shift"] is None
-    assert "takes `goal` and `present` in the log, and the gait" in " ".join(one["doubts"])
+    assert "requires `goal` and `present` in the log, and the gait" in " ".join(one["doubts"])
 
 
 def test_with_log_and_gait_a_recording_goes_to_the_command_s_clock(run, tmp_path):
@@ -159,7 +159,7 @@ def test_with_log_and_gait_a_recording_goes_to_the_command_s_clock(run, tmp_path
     assert "the command's, by the servo's log" in one["source"]["clock"]
     text = " ".join(one["doubts"])
     assert "put on the command's clock" in text
-    assert re.search("phi lags its command by (30|29.9) ms.*: a servo that is late, as", text)
+    assert re.search("phi lags its command by (30|29.9) ms.*: servo delay, as", text)
 
 
 @pytest.mark.parametrize(

@@ -55,4 +55,4 @@ def test_a_gait_that_stands_goes_round_no_circle():
     """The fastest on this circle makes 0.3 um/s, within rounding of turning to either side."""
     posed = turning_at_random(draw("acc0d7813779831d", 32_000))
     message = refused(replace(posed, turn=round_(0.0134114)))
-    assert "below 0.001 mm/s a robot counts as standing" in message
+    assert "below 0.001 mm/s a robot counts as stationary" in message

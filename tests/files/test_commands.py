@@ -23,7 +23,7 @@ def test_good_files():
 def test_a_warning_is_printed_and_exits_with_0():
     result = run("lint", SHIPPED / "robot.yaml")
     assert result.exit_code == 0
-    assert ": servo.angle_limit: warning: Within 2.6 rad" in result.stdout
+    assert ": servo.angle_limit: warning: The servo's range, 2.6 rad" in result.stdout
 
 
 def test_errors_of_all_files(write):

@@ -159,7 +159,7 @@ def test_every_mistake_at_once(experiment):
     assert found["recordings[0].file"].message == (
         "Read 'three.csv'. There is no such file. Check its name and folder."
     )
-    assert "which is recordings[1] too" in found["recordings[2].file"].message
+    assert "which is also recordings[1]" in found["recordings[2].file"].message
     assert "on both platforms" in found["markers.platform2.B"].message
 
 
@@ -224,16 +224,16 @@ def test_a_problem_is_not_read_from_it(experiment):
 @pytest.mark.parametrize(
     ("text", "place", "message"),
     [
-        (HEAD + RUNS.replace("use: holdout", "use: fit"), "recordings", "No recording is kept"),
+        (HEAD + RUNS.replace("use: holdout", "use: fit"), "recordings", "No recording is held out"),
         (
             HEAD + RUNS.replace("start: rest", "use: holdout"),
             "recordings",
-            "No recording is to be fitted",
+            "No recording is marked to be fitted",
         ),
         (
             HEAD + RUNS.replace("30 deg", "130 deg"),
             "recordings[0].gait",
-            "beyond 1.887 rad lies the singular posture",
+            "past the singular posture at 1.887 rad",
         ),
         (
             HEAD.replace("c: 206 mm, a: 20 mm", "c: 206 mm, a: 0") + RUNS + "uncertainty: {a: 5 %}",

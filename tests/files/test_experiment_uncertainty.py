@@ -90,7 +90,7 @@ def test_unknown_is_free_within_a_factor_of_5(known, name):
         ("{m: 1 m}", "a length. Expected a number, or a number with a unit, in kg"),
         ("{m: -1 g}", "at least 0"),
         ("{m: -5 %}", "Expected a share of at least 0"),
-        ("{m: known}", "A share such as `5 %`, or `unknown`, will do too."),
+        ("{m: known}", "A share such as `5 %`, or `unknown`, is allowed too."),
         ("{m: .inf}", "Read .inf."),
         ("{psi_zero: unknown}", "Read the text 'unknown'"),
         ("{phi_zero: 5 %}", "Expected a number, or a number with a unit, in rad"),

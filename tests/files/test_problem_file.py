@@ -60,7 +60,7 @@ def test_limits_beyond_the_servo_are_warned_about(write):
         ("warning", "limits.angle"),
         ("warning", "limits.rate"),
     ]
-    assert "Read 3, beyond what the robot's servo can do, 2.6 rad." in issues[0].message
+    assert "Read 3, more than the robot's servo can do, 2.6 rad." in issues[0].message
 
 
 def test_amplitudes_that_are_surely_degrees_are_warned_about(write):

@@ -26,7 +26,7 @@ REFUSED = {
     "? [1]\n: 2\n": "f:1: A key is a list or a mapping. Expected a word.",
     "a: \x00": "f: The text has a character (code 0) that YAML does not allow.",
     'a: "\\UFFFFFFFF"': "f: The text is not YAML",
-    'a: "\\ud800"': "f:1: a: The text holds half a character.",
+    'a: "\\ud800"': "f:1: a: The text contains half a character.",
     "[" * 3000: "The file is too large. Expected at most 10000 values in 20 levels.",
     "[" + "0," * 11000 + "]": "The file is too large.",
 }

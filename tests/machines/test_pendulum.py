@@ -50,7 +50,7 @@ def test_a_copy_is_no_evidence(tmp_path):
     (folder / "run1.csv").write_text("\n".join([head, *rows[100:300]]))
     issues = [str(one) for one in rr.lint(folder) if one.level == "error"]
     assert len(issues) == 1
-    assert "Read the same motion as run0.csv. Expected another run" in issues[0]
+    assert "Read the same motion as run0.csv. Expected a different run" in issues[0]
 
 
 def test_a_machine_that_there_is_not(tmp_path):

@@ -64,7 +64,7 @@ def test_the_command(file, tmp_path):
     given = ["study", str(file), "--out", str(tmp_path / "out"), "--workers", "1", "--no-figures"]
     ended = CliRunner().invoke(app, given)
     assert ended.exit_code == 0
-    assert "1 of 2 routes are driven" in ended.stdout
+    assert "1 of 2 routes can be driven" in ended.stdout
     assert "warning: tight: The route cannot be driven" in ended.stderr
 
 
@@ -74,7 +74,7 @@ def test_the_command(file, tmp_path):
         ("routes: []", "routes"),
         ("routes: [none.yaml]", "none.yaml"),
         ("routes: [ahead.yaml, ahead.yaml]", "Read ahead twice"),
-        ("routes: [ahead.yaml]\nvary: {limits.rate: [1, 2]}", "Read `vary` beside `routes`"),
+        ("routes: [ahead.yaml]\nvary: {limits.rate: [1, 2]}", "Read `vary` as well as `routes`"),
     ],
 )
 def test_a_wrong_file(file, text, expected):

@@ -73,5 +73,5 @@ class Gone(LocalPool):
 
 
 def test_no_row_is_made_up_when_all_processes_are_gone():
-    with pytest.raises(PoolLostError, match="give the same command again"):
+    with pytest.raises(PoolLostError, match="repeat the command"):
         list(run(Gone(), dies_over_three, {0: 1, 1: 2}))

@@ -33,29 +33,32 @@ def doubt(
 @pytest.mark.parametrize(
     ("factors", "reason"),
     [
-        ({"constant": 0.1}, "but recordings disagree on the values."),
-        ({"alike": 0.1}, "but more is left than machines differ from such models."),
-        ({"single": 0.5}, "but so many effects can imitate anything."),
-        ({"predicts": 0.1}, "but the recordings that were not fitted do not bear it out."),
-        ({"constant": 0.1, "alike": 0.1}, "disagree on the values and more is left than"),
-        ({"alike": 0.6, "predicts": 0.7}, "but more is left than machines differ"),
+        ({"constant": 0.1}, "but the recordings disagree on the values."),
+        ({"alike": 0.1}, "but the remaining misfit exceeds the usual error of such models."),
+        ({"single": 0.5}, "but that many effects can mimic almost anything."),
+        ({"predicts": 0.1}, "but the held-out recordings do not confirm it."),
+        (
+            {"constant": 0.1, "alike": 0.1},
+            "disagree on the values and the remaining misfit exceeds",
+        ),
+        ({"alike": 0.6, "predicts": 0.7}, "but the remaining misfit exceeds"),
         ({}, "but others do about as well."),
     ],
 )
 def test_the_reason(factors, reason):
     said = doubt(candidate("lateral_slip", "coulomb_friction"), **factors)
-    assert said.startswith("What predicts best is lateral slip and Coulomb friction, but")
+    assert said.startswith("The best candidate is lateral slip and Coulomb friction, but")
     assert reason in said
 
 
 def test_what_was_not_needed_is_said_to_leave_most():
     said = doubt(candidate(), candidate("servo_lag", elpd=9.0))
-    assert said == "What predicts best is servo lag, but most of the misfit is left."
+    assert said == "The best candidate is servo lag, but most of the misfit remains."
 
 
 def test_what_predicts_too_little_better_is_said_to_be_open():
     said = doubt(candidate(), candidate("coulomb_friction", elpd=3.0, better=False))
-    assert said.startswith("What predicts best is Coulomb friction, but by too little to be sure")
+    assert said.startswith("The best candidate is Coulomb friction, but its lead is too small")
 
 
 def test_nothing_is_said_where_nothing_predicts_better():
@@ -65,4 +68,4 @@ def test_nothing_is_said_where_nothing_predicts_better():
 
 def test_what_only_recordings_show_that_were_not_fitted_is_to_be_fitted():
     said = doubt(candidate(better=False), none=True)
-    assert said == "The recordings that were fitted show none of it: fit those that do."
+    assert said == "The fitted recordings do not show the missing physics: fit those that do."

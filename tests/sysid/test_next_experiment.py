@@ -40,7 +40,7 @@ def test_it_tells_the_answer_from_its_rival(case):
     assert told is not None
     assert told.between == ("coulomb_friction", "quadratic_drag")
     assert told.separation > 0.3
-    assert f"coulomb_friction and quadratic_drag differ in it by {told.separation:.1f}" in (
+    assert f"Coulomb friction and quadratic drag would differ by {told.separation:.1f}" in (
         told.sentence
     )
     # A rival that predicts the same leaves nothing to tell: a value is narrowed down instead.
@@ -54,7 +54,7 @@ def test_without_a_rival_it_narrows_down_a_value(case):
     told = next_experiment(model, coulomb, None)
     assert told is not None
     assert told.between[1] in coulomb.problem.names
-    narrower = float(told.sentence.split(", ")[-1].split()[0])
+    narrower = float(told.sentence.rpartition("a factor of ")[2].removesuffix("."))
     assert narrower > 1.2
 
 

@@ -27,13 +27,13 @@ def found():
         ),
         ("parameters", "The model is right, but the value of Coulomb friction is not."),
         ("missing_physics", "The model leaves out Coulomb friction (confidence 99 %)."),
-        ("unexplained", "Something is left out, and no effect of the catalogue is shown to be it."),
+        ("unexplained", "Physics is missing; no effect in the catalogue is shown to be the cause."),
     ],
 )
 def test_it_opens_with_the_verdict(found, verdict, said):
     text = summary_of(replace(found, verdict=verdict, indistinguishable=()))
-    assert text.startswith(f"{said} On recordings that were not fitted, the misfit fell from")
-    assert "from 8.10 to 1.02 sigma, where 1 is the noise." in text
+    assert text.startswith(f"{said} On held-out recordings, the misfit fell from")
+    assert "from 8.10 to 1.02 sigma, where 1 is noise alone." in text
 
 
 def test_a_model_that_is_right_as_it_is_believed_to_be_is_not_refitted(found):
@@ -54,7 +54,7 @@ def test_a_misfit_that_rises_is_not_said_to_fall(found, after, said):
 
 
 def test_why_nothing_is_named_is_said(found):
-    why = "What predicts best is slip, but recordings disagree on the values."
+    why = "The best candidate is slip, but the recordings disagree on the values."
     assert why in summary_of(replace(found, verdict="unexplained"), doubt=why)
     assert why not in summary_of(found, doubt=why)
 
@@ -71,7 +71,7 @@ def test_a_place_is_never_said_to_be_off_by_nothing(off, said):
 
 def test_what_remains_is_told_with_what_it_depends_on(found):
     left = replace(found, remainder=Remainder("small", 0.4, 0.03, "a force along the wheels"))
-    assert "What remains is small (3 % of the misfit): a force along the wheels." in summary_of(
+    assert "The remainder is small (3 % of the misfit): a force along the wheels." in summary_of(
         left
     )
     assert "What remains" not in summary_of(found)
@@ -80,7 +80,7 @@ def test_what_remains_is_told_with_what_it_depends_on(found):
 
 def test_a_tie_is_called_one(found):
     tied = replace(found, indistinguishable=(("coulomb_friction", "lateral_slip"),))
-    said = "These recordings cannot distinguish that from lateral slip."
+    said = "These recordings cannot distinguish this from lateral slip."
     assert said in summary_of(tied)
     assert said not in summary_of(replace(tied, indistinguishable=()))
     assert said not in summary_of(replace(tied, verdict="unexplained"))
@@ -96,7 +96,9 @@ def test_the_next_recording_is_asked_for_where_something_is_open(found):
 
 def test_recordings_that_were_all_fitted_are_called_so(found):
     final = tuple(replace(one, held_out=False) for one in found.final)
-    assert "On the recordings, which were all fitted, " in summary_of(replace(found, final=final))
+    assert "On the recordings, all of which were fitted, " in summary_of(
+        replace(found, final=final)
+    )
 
 
 def test_its_worth_in_the_machines_own_terms(found):

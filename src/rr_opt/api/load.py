@@ -225,8 +225,8 @@ def _with_nearest_ratio(robot: Robot, choice: RatioChoice) -> tuple[Robot, tuple
         return made, ()
     return made, (
         f"The problem leaves the inertia ratio J20/J10 open from {choice.bounds.low:.4g} to "
-        f"{choice.bounds.high:.4g}. The nearest to the robot's own {own:.4g} is driven, "
-        f"{ratio:.4g}, and not the optimum.",
+        f"{choice.bounds.high:.4g}. The closest to the robot's own {own:.4g} is driven, "
+        f"{ratio:.4g}, not the optimum.",
     )
 
 
@@ -235,8 +235,8 @@ def _of_result(document: FileData) -> RobotWithGait:
     robot: Any = document.data.get("robot")
     if "command" in document.data:
         raise InputError(
-            f"{document.file}: Read the drive of a route, which is no gait. Its set points are in "
-            "setpoints.csv beside it; `rr-opt route --animate gif` films it."
+            f"{document.file}: Read the drive of a route, which is not a gait. Its set points are "
+            "in setpoints.csv next to it; `rr-opt route --animate gif` animates it."
         )
     if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
         raise InputError(
@@ -257,7 +257,7 @@ def _of_result(document: FileData) -> RobotWithGait:
     why = f" {message}" if isinstance(message, str) else ""
     doubt = (
         f"{document.file}: The status of this result is {shown(status)} and not 'optimal'.{why} "
-        "Its gait is driven all the same."
+        "Its gait is driven anyway."
     )
     return RobotWithGait(read, gait, status if isinstance(status, str) else shown(status), (doubt,))
 
@@ -277,8 +277,8 @@ def _limits(document: FileData) -> Limits | None:
     except (KeyError, TypeError, ValueError):
         pass
     raise InputError(
-        f"{document.file}: limits: Read an entry that is no limit. Expected each with the `name` "
-        "of a limit and a positive `limit`, or null for none, as rr-opt writes them."
+        f"{document.file}: limits: Read an entry that is not a limit. Expected each with the "
+        "`name` of a limit and a positive `limit`, or null for none, as rr-opt writes them."
     )
 
 
@@ -300,8 +300,8 @@ def _doubts(
     if defaults:
         values = [f"{name} {with_unit(getattr(gait, name), units[name])}" for name in defaults]
         notes.append(
-            f"No {' and '.join(defaults)} given. The default is driven, {' and '.join(values)} "
-            f"after the paper's run, and not the optimum of {of}."
+            f"No {' and '.join(defaults)} given. The default is driven, {' and '.join(values)} as "
+            f"in the paper's run, not the optimum of {of}."
         )
     if shape != "sine":
         notes.append(f"The problem asks for a `{shape}` gait, but a sine is driven.")

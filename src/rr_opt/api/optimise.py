@@ -62,8 +62,8 @@ def require_known(problem: Problem) -> None:
     if names := beyond_optimiser(problem.robot):
         raise InputError(
             f"Read {listed(names)} in the robot's physics with `objective: cost_of_transport` or "
-            "one of the limits power, cost_of_transport and speed. The optimiser knows no energy "
-            "of a robot with such effects. Leave them out, or ask for the speed alone."
+            "one of the limits power, cost_of_transport and speed. The optimiser has no energy "
+            "model for a robot with such effects. Leave them out, or optimise the speed alone."
         )
 
 
@@ -109,7 +109,7 @@ def checked_optimum(
         better = check.better if check else swept.refined
         if better is None:
             break
-        progress("climb on from a gait that the sweep found")
+        progress("restart from a gait that the sweep found")
         climbed = design.resumed(optimum, better.gait, better.ratio)
         if climbed is optimum:
             break
@@ -117,7 +117,7 @@ def checked_optimum(
     if optimum.best is None or optimum.robot is None:
         proved = posture_clashes(optimum.problem, decisions(optimum.problem))
         if optimum.status is Status.INFEASIBLE and not proved:
-            second = f" A sweep of {swept.points} gaits by another model finds none either."
+            second = f" A sweep of {swept.points} gaits with another model finds none either."
             optimum = replace(optimum, message=optimum.message + second)
         return optimum, None, None
     progress("replay by CVODES")

@@ -104,8 +104,8 @@ def _refuse(given: list[str]) -> NoReturn:
     """Raise InputError: an experiment file has these settings itself."""
     options = " and ".join(f"--{name.replace('_', '-')}" for name in given)
     raise InputError(
-        f"{options} came with an experiment. Expected one recording: the experiment's file says "
-        "how each was made. Name the file of a recording."
+        f"Read {options} with an experiment. Expected a single recording: the experiment's file "
+        "says how each was made. Name the file of a recording."
     )
 
 
@@ -199,8 +199,8 @@ def _identified(model: MachineModel, kind: str, progress: Progress) -> Diagnosis
     found = diagnose(model, progress)
     if not (found.before < math.inf and found.after < math.inf):
         raise NotConvergedError(
-            "The fits did not converge: a simulation diverged. Expected motion near that of the "
-            f"nominal {kind}. Look at the recordings with `rr-opt inspect`, and check the {kind}'s "
-            "values."
+            "The fits did not converge: a simulation diverged. Expected motion close to that of "
+            f"the nominal {kind}. Look at the recordings with `rr-opt inspect`, and check the "
+            f"{kind}'s values."
         )
     return found

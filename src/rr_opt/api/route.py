@@ -112,8 +112,8 @@ def routes(
 
 
 _DIED = (
-    "The process that drove this route died each time it was tried. Drive it by itself with "
-    "`rr-opt route` to see why."
+    "The process that drove this route died each time it was tried. Run it alone with `rr-opt "
+    "route` to see why."
 )
 
 
@@ -125,7 +125,7 @@ def _driven_case(asked: Route) -> dict[str, Any]:
     except RollerRacerError as error:
         record = _lost(str(error))
     except Exception as error:  # one route must not end the others
-        record = _lost(f"The route ended in an error that is a defect: {error!r}.")
+        record = _lost(f"The route failed with an internal error: {error!r}.")
     return record | {"cpu_seconds": time.process_time() - begun}
 
 

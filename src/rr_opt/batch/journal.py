@@ -109,9 +109,9 @@ class Journal(Generic[Row]):
             raise self._damaged(1, str(error)) from None
         if known != identity:
             raise InputError(
-                f"The rows in {self._path} are of another study: {_difference(known, identity)}. "
-                "Expected the one they were begun with, to go on with it. Begin anew with "
-                "--restart, which discards those rows, or give another folder with --out."
+                f"The rows in {self._path} belong to another study: "
+                f"{_difference(known, identity)}. Expected the study they were started with. Start "
+                "over with --restart, which discards those rows, or give another folder with --out."
             )
         for number, line in enumerate(lines, 2):
             try:
@@ -132,14 +132,14 @@ class Journal(Generic[Row]):
         if self._cases is not None and case >= self._cases:
             raise ValueError(f"its case is {case}, of {self._cases} from 0 on")
         if case in self.rows:
-            raise ValueError(f"case {case} has a row already")
+            raise ValueError(f"case {case} already has a row")
         return case, self._read(record)
 
     def _damaged(self, number: int, why: str) -> InputError:
         return InputError(
             f"The journal {self._path} is damaged in line {number}: {why}. Expected a JSON object "
             "for each case, as rr-opt wrote it. Delete the line to have its case solved again, or "
-            "begin anew with --restart, which discards all rows."
+            "start over with --restart, which discards all rows."
         )
 
     def _write(self, record: Mapping[str, Any]) -> None:
@@ -161,7 +161,7 @@ def _parsed(line: bytes) -> dict[str, Any]:
     """The JSON object in a line. Raises ValueError."""
 
     def refuse(name: str) -> None:
-        raise ValueError(f"{name} is not a number of JSON")
+        raise ValueError(f"{name} is not a JSON number")
 
     try:
         record = json.loads(line, parse_constant=refuse)
@@ -179,4 +179,4 @@ def _parsed(line: bytes) -> dict[str, Any]:
 def _difference(known: dict[str, Any], identity: dict[str, Any]) -> str:
     """What changed, in words."""
     changed = [_CHANGES.get(key, key) for key in identity if known.get(key) != identity[key]]
-    return f"{' and '.join(changed) or 'something'} changed since they were begun"
+    return f"{' and '.join(changed) or 'something'} changed since they were started"

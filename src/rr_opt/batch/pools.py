@@ -188,12 +188,12 @@ def _knock(address: str) -> None:
     """Raise ValueError for an invalid address, OSError if no scheduler is there."""
     match = _ADDRESS.fullmatch(address)
     if match is None or not 0 < int(match["port"]) < 2**16:
-        raise ValueError("it is no address")
+        raise ValueError("it is not an address")
     place = match["host"].strip("[]"), int(match["port"])
     with socket.create_connection(place, _PATIENCE) as line:
         # A scheduler speaks first, unless TLS has to be negotiated before.
         if match["scheme"] != "tls" and not line.recv(1):
-            raise OSError("it hangs up")
+            raise OSError("it closes the connection")
 
 
 def _first_line(error: BaseException) -> str:

@@ -29,8 +29,8 @@ Result = TypeVar("Result")
 
 LOST = (
     "The process that solved this case died each time it was tried. It may have run out of memory, "
-    "or a compiled library may have crashed. Solve the case by itself with "
-    "`rr-opt maximize-speed` to see why."
+    "or a compiled library may have crashed. Solve the case alone with `rr-opt maximize-speed` to "
+    "see why."
 )
 
 
@@ -83,8 +83,8 @@ def _outcome(pool: Pool, future: Future[Any]) -> Any:
         return LOST
     what = str(error) or type(error).__name__
     raise PoolLostError(
-        f"The processes that solve the cases were lost ({what}). Expected them to be there to the "
-        "end. Finished rows are kept: see to the scheduler, and give the same command again."
+        f"The processes that solve the cases were lost ({what}). Expected them to run to the end. "
+        "Finished rows are kept: check the scheduler, and repeat the command."
     ) from error
 
 

@@ -83,7 +83,7 @@ Workers = Annotated[
     int | None, typer.Option(help="Number of processes.", min=1, show_default="one per core")
 ]
 Scheduler = Annotated[
-    str | None, typer.Option(help="Work on a dask cluster: tcp://HOST:PORT of its scheduler.")
+    str | None, typer.Option(help="Run on a dask cluster: tcp://HOST:PORT of its scheduler.")
 ]
 
 
@@ -139,7 +139,7 @@ def require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> No
         )
         raise InputError(
             f"{file}: The file has the answer to another question: {words}. Expected a folder for "
-            "this one. Give another with --out, or --force to write over it."
+            "this one. Give another with --out, or overwrite it with --force."
         )
 
 
@@ -273,8 +273,8 @@ Samples = Annotated[float, typer.Option(help="Samples per second.")]
 PointRate = Annotated[
     float | None,
     typer.Option(
-        help="Set points per second; default: 125 or, for servo, the most below at which the "
-        "largest step is a whole number of counts.",
+        help="Set points per second; default: 125 or, for servo, the highest rate below that at "
+        "which the largest step is a whole number of counts.",
         show_default=False,
     ),
 ]

@@ -49,7 +49,7 @@ def find_sines(problem: Problem, progress: Progress) -> Finds:
         finds.pairs.extend(_turned_round(*finds.good[0]))
     if finds.good:
         return finds
-    progress("no start led to an optimum: looking everywhere for gaits that keep all limits")
+    progress("no start led to an optimum: searching everywhere for gaits that keep all limits")
     found = clash(problem, box, settings)
     if isinstance(found, str):
         kept = any(one.feasible for _, one in finds.pairs)

@@ -132,8 +132,8 @@ def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
 def _evidence(found: Attempt, box: Decisions) -> str:
     apart = found.scanned ** (-1 / max(len(box.free), 1))
     return (
-        f"This rests on {found.scanned} gaits all over the bounds, neighbours "
-        f"{100 * apart:.2g} % of each range apart, and on climbs from the best of them."
+        f"This is based on {found.scanned} gaits across the bounds, spaced {100 * apart:.2g} % of "
+        "each range apart, and on local searches from the best of them."
     )
 
 
@@ -143,7 +143,7 @@ _UNITS = {"torque": " N m", "power": " W", "speed": " m/s"}
 def _both(problem: Problem, names: list[str], found: Attempt) -> str:
     limits = [f"`{n}` ({getattr(problem.limits, n):.6g}{_UNITS.get(n, '')})" for n in names]
     return (
-        f"Limits {listed(limits)} clash: the gait that comes nearest to keeping all limits breaks "
+        f"Limits {listed(limits)} clash: the gait that comes closest to keeping all limits exceeds "
         f"each of these by {100 * found.excess:.2g} %."
     )
 
@@ -287,7 +287,7 @@ def _turn(problem: Problem, box: Decisions, found: Attempt, other: Attempt) -> l
     """Why no gait makes the turn; other: the closest one that drives the other way."""
     turn, nearest = problem.turn or Turn(), _nearest(found)
     gait, held = nearest.gait, held_by(problem, box, nearest)
-    held_text = listed(held) or "no limit: the robot itself turns no closer to it"
+    held_text = listed(held) or "no limit: the robot itself can turn no closer to it"
     sentences = [
         f"The requested turn, {_asked_text(turn)}, is infeasible.",
         f"The closest feasible one is {_reached_text(turn, nearest)}, with amplitude "
@@ -315,7 +315,7 @@ def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:
         if value >= limit * (1 - _NEAR)
     ]
     if abs(nearest.speed) < STANDS * (1 + _NEAR):
-        held.append(f"its speed: below {1e3 * STANDS:g} mm/s a robot counts as standing")
+        held.append(f"its speed: below {1e3 * STANDS:g} mm/s a robot counts as stationary")
     shares = Interval(0.0, 0.0) if box.ballast.fixed else Interval(0.0, 1.0)
     for name, value, bounds in (
         ("amplitude", gait.amplitude, problem.gait.amplitude),

@@ -22,11 +22,11 @@ _SENTENCES = {
     "Infeasible_Problem_Detected": "No gait near this start respects all limits.",
     "Maximum_Iterations_Exceeded": "The solver ran out of iterations.",
     "Maximum_CpuTime_Exceeded": "The solver ran out of time.",
-    "Restoration_Failed": "The solver could not get back to gaits that keep the limits.",
+    "Restoration_Failed": "The solver could not return to gaits that keep the limits.",
     "Error_In_Step_Computation": "The solver could not compute a step.",
-    "Invalid_Number_Detected": "The equations of motion gave a number that is not finite.",
-    "Diverging_Iterates": "The iterates ran away.",
-    "Search_Direction_Becomes_Too_Small": "The solver's steps became too small to go on.",
+    "Invalid_Number_Detected": "The equations of motion gave a non-finite number.",
+    "Diverging_Iterates": "The iterates diverged.",
+    "Search_Direction_Becomes_Too_Small": "The solver's steps became too small to continue.",
 }
 """IPOPT's own return status; CasADi's unified status merges several of them."""
 

@@ -20,6 +20,6 @@ EFFECT = Effect(
         Parameter("toe1", "rad", (-0.3, 0.3), 0.02),
         Parameter("toe2", "rad", (-0.3, 0.3), 0.02),
     ),
-    sentence="An axle is turned about its centre, so that its wheels roll off to one side.",
+    sentence="An axle is rotated about its centre, so its wheels steer to one side.",
     enter=_enter,
 )

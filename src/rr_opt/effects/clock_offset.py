@@ -7,6 +7,6 @@ EFFECT = Effect(
     family="measurement",
     port=Port.MEASUREMENT,
     parameters=(Parameter("offset", "s", (-0.5, 0.5), 0.01),),
-    sentence="The recording's clock and the command's clock differ, by the same in all runs.",
+    sentence="The recording's clock is offset from the command's by the same amount in all runs.",
     delay="offset",
 )

@@ -22,6 +22,6 @@ EFFECT = Effect(
     family="mass",
     port=Port.MASS,
     parameters=(Parameter("d1", "m", (-0.1, 0.1), 0.005), Parameter("d2", "m", (-0.1, 0.1), 0.005)),
-    sentence="A platform's centre of mass lies to the left of its axis, or to the right.",
+    sentence="A platform's centre of mass lies to the left or right of its axis.",
     enter=_enter,
 )

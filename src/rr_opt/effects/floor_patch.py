@@ -62,7 +62,7 @@ EFFECT = Effect(
         Parameter("edge_x", "m", (-100.0, 100.0), 0.3, typical_for=_near, guess_from_data=True),
         Parameter("edge_y", "m", (-100.0, 100.0), 0.3, typical_for=_near),
     ),
-    sentence="On a part of the floor the wheels roll harder, or more easily, than elsewhere.",
+    sentence="On part of the floor the wheels roll with more or less resistance than elsewhere.",
     enter=_enter,
     forms=(("multiplier", "x", "y", "radius"), ("multiplier", "normal", "edge_x", "edge_y")),
     differentiable=False,

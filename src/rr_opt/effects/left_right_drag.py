@@ -26,6 +26,6 @@ EFFECT = Effect(
         Parameter("asymmetry1", "dimensionless", (-1.0, 1.0), 0.2),
         Parameter("asymmetry2", "dimensionless", (-1.0, 1.0), 0.2),
     ),
-    sentence="The left wheels roll less easily than the right ones, or more easily.",
+    sentence="The left wheels roll with more or less resistance than the right ones.",
     enter=_enter,
 )

@@ -19,6 +19,6 @@ EFFECT = Effect(
     family="measurement",
     port=Port.MEASUREMENT,
     parameters=(Parameter("dx", "m", (-0.2, 0.2), 0.005), Parameter("dy", "m", (-0.2, 0.2), 0.005)),
-    sentence="The tracked point is not the joint but a point beside it on platform 1.",
+    sentence="The tracked point is not the joint but a nearby point on platform 1.",
     observe=_observe,
 )

@@ -57,7 +57,7 @@ EFFECT = Effect(
         Parameter("coefficient_total", "N s^2/m^2", (0.0, 100.0), 0.1, typical_for=_as_viscous),
         Parameter("coefficient_bodies", "N s^2/m^2", (0.0, 100.0), 0.1, typical_for=_as_viscous),
     ),
-    sentence="The wheels, or what the platforms move through, resist with the square of the speed.",
+    sentence="The wheels or the air resist in proportion to the square of the speed.",
     enter=_enter,
     forms=(("coefficient_total",), ("coefficient_bodies",)),
 )

@@ -46,7 +46,7 @@ EFFECT = Effect(
         Parameter("speed", "m/s", (1e-3, 100.0), 0.2, neutral=0.2),
         *(Parameter(f"force{k}", "N", (-10.0, 10.0), 0.02) for k in range(len(KNOTS))),
     ),
-    sentence="Each wheel resists rolling with a force that is given at five speeds.",
+    sentence="Each wheel resists rolling with a force tabulated at five speeds.",
     enter=_enter,
     candidate=False,
 )

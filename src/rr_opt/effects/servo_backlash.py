@@ -296,7 +296,7 @@ EFFECT = Effect(
         Parameter("joint_friction", "N m", (0.0, 5.0), 0.05, initial_guesses=(0.3, 2.0)),
         Parameter("compliance", "rad/(N m)", (0.0, 2.0), 0.05, initial_guesses=(0.3,)),
     ),
-    sentence="There is play between the servo and the platform that it turns.",
+    sentence="There is play between the servo and the platform it turns.",
     actuate=_actuate,
     actuate_all=_actuate_all,
     frees_joint=True,

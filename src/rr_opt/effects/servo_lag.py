@@ -81,7 +81,7 @@ EFFECT = Effect(
         Parameter("tau", "s", (0.0, 0.5), 0.02),
         Parameter("beta", "s^2", (0.0, 0.05), 2e-4),
     ),
-    sentence="The servo follows its command late, and with a smaller swing.",
+    sentence="The servo follows its command with a delay and a smaller amplitude.",
     actuate=_actuate,
     linear=lambda values: LinearServo(values["tau"], values.get("beta", 0.0)),
     forms=(("tau",), ("tau", "beta")),

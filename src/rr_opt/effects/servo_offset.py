@@ -20,7 +20,7 @@ EFFECT = Effect(
     family="actuation",
     port=Port.ACTUATION,
     parameters=(Parameter("offset", "rad", (-0.5, 0.5), 0.02),),
-    sentence="The servo's zero is off: the angle is the commanded one and a constant.",
+    sentence="The servo's zero is off: the angle is the commanded one plus a constant.",
     actuate=_actuate,
     linear=lambda values: LinearServo(shift=values["offset"]),
 )

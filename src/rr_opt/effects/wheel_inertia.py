@@ -28,6 +28,6 @@ EFFECT = Effect(
     family="rolling",
     port=Port.MASS,
     parameters=(Parameter("J", "kg m^2", (0.0, 1e-2), 1e-6, typical_for=_of_mass),),
-    sentence="Turning the wheels about their axles takes energy of its own.",
+    sentence="Spinning the wheels about their axles takes kinetic energy of its own.",
     enter=_enter,
 )

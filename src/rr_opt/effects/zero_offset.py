@@ -23,7 +23,7 @@ EFFECT = Effect(
         Parameter("psi", "rad", (-1.0, 1.0), 0.01),
         Parameter("phi", "rad", (-1.0, 1.0), 0.01),
     ),
-    sentence="The capture system measures heading and servo angle from a zero that is off.",
+    sentence="The capture system's zeros of heading and servo angle are off.",
     observe=_observe,
     candidate=False,
 )

@@ -134,7 +134,7 @@ def _twice(document: FileData, entries: list[object]) -> list[Issue]:
             continue
         first = seen.setdefault(str(Path(name)), index)
         if first != index:
-            message = f"Read {shown(name)}, which is recordings[{first}] too. Keep one of them."
+            message = f"Read {shown(name)}, which is also recordings[{first}]. Keep one of them."
             issues.append(document.error(("recordings", index, "file"), message))
     return issues
 
@@ -143,9 +143,9 @@ def _uses(document: FileData, runs: list[PlannedRun]) -> list[Issue]:
     """Requests that the recordings do not support."""
     uses = [run.use for run in runs]
     if "fit" not in uses:
-        message = "No recording is to be fitted. Give at least one `use: fit`."
+        message = "No recording is marked to be fitted. Give at least one `use: fit`."
     elif "holdout" not in uses:
-        message = "No recording is kept back to check a fit on. Give one of them `use: holdout`."
+        message = "No recording is held out to check the fit. Give one of them `use: holdout`."
     else:
         return []
     return [document.warning(("recordings",), message)]
@@ -198,7 +198,7 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
         markers, found = _markers(document)
         issues += found
     if model is not None and model.servo_counts.range == 0:
-        message = "Read 0. Expected the angle that all counts cover. Write for example `300 deg`."
+        message = "Read 0. Expected the angle that the counts span. Write for example `300 deg`."
         issues.append(document.error(("servo_counts", "range"), message))
     if model is None or robot is None or has_errors(issues):
         return None, issues
@@ -207,9 +207,9 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
     for at, run in enumerate(runs):
         if run.gait.peak_angle >= robot.singular_angle:
             message = (
-                f"The gait reaches |phi| = {run.gait.peak_angle:.4g} rad, and beyond "
-                f"{robot.singular_angle:.4g} rad lies the singular posture, where a model without "
-                "side slip means nothing."
+                f"The gait reaches |phi| = {run.gait.peak_angle:.4g} rad, past the singular "
+                f"posture at {robot.singular_angle:.4g} rad, where a model without side slip is "
+                "meaningless."
             )
             issues.append(document.warning(("recordings", at, "gait"), message))
     plan = ExperimentPlan(
@@ -249,7 +249,7 @@ def layout_from(document: FileData) -> tuple[Layout | None, list[Issue]]:
             other = taken.setdefault(place[:2], name)
             if other != name and len(place) == 2:
                 message = (
-                    f"Read the place of {shown(other)} again. Expected another one. Measure it."
+                    f"Read the place of {shown(other)} again. Expected a different one. Measure it."
                 )
                 issues.append(document.error((platform, name), message))
     if issues:

@@ -65,7 +65,7 @@ class Uncertain:
         try:
             return Spread(sigma=Number(self.unit, self.example, at_least=0).read(value))
         except InputError as error:
-            other = "" if self.absolute else " A share such as `5 %`, or `unknown`, will do too."
+            other = "" if self.absolute else " A share such as `5 %`, or `unknown`, is allowed too."
             raise InputError(f"{error}{other}") from None
 
     def _share(self, value: str) -> float:
@@ -84,7 +84,7 @@ UncertaintyModel: Any = create_model(
     "UncertaintyModel",
     __base__=FileModel,
     __doc__="How well nominal values are known: `2 mm`, `5 %`, or `unknown`, free within a factor "
-    "of 5. `m` stands for `m1` and `m2`, which go before it; 0 is exact.",
+    "of 5. `m` stands for `m1` and `m2`, which take precedence; 0 is exact.",
     **dict(_fields()),
 )
 
@@ -114,7 +114,7 @@ def shares_of_nothing(model: Any, robot: Robot) -> Iterator[tuple[str, str]]:
         if zeros:
             yield (
                 key,
-                f"The nominal {' and '.join(zeros)} is 0, and any share or multiple of it is 0: "
+                f"The nominal {' and '.join(zeros)} is 0, and so is any share or multiple of it: "
                 "it would be taken as exact. Write an absolute value, such as "
                 f"`{PARAMETERS[zeros[0]].sigma_example}`.",
             )
@@ -170,7 +170,7 @@ def _columns() -> Iterator[tuple[str, Any]]:
 ColumnsModel: Any = create_model(
     "ColumnsModel",
     __base__=FileModel,
-    __doc__="Where channels are in text files that name them otherwise, and in which unit.",
+    __doc__="Columns and units of the channels in text files that name them differently.",
     **dict(_columns()),
 )
 
@@ -201,7 +201,7 @@ def _two_markers(given: object) -> object:
     if isinstance(given, dict) and len(given) > 1:
         return given
     raise ValueError(
-        f"Read {shown(given)}. Expected at least 2 markers by name: one alone has no heading. "
+        f"Read {shown(given)}. Expected at least 2 markers by name: a single one has no heading. "
         "Write for example `{RR1: [40 mm, 0], RR2: [180 mm, 30 mm]}`."
     )
 
@@ -230,7 +230,7 @@ class RecordingModel(FileModel):
         description="The commanded phi(t), its clock starting at the recording's t = 0; "
         "or the file of a result of rr-opt that has it."
     )
-    use: Use = Field(default="fit", description="holdout: kept back, to check the fit on.")
+    use: Use = Field(default="fit", description="holdout: kept back to check the fit.")
     start: Start = Field(
         default="running",
         description="rest: the robot stood still until t = 0, where the command began; running: "
@@ -250,7 +250,7 @@ class ExperimentModel(FileModel):
     robot: Annotated[str | RobotModel, SkipValidation] = Field(
         description="A robot file, relative to this one, or the robot itself: nominal values."
     )
-    noise: Annotated[Noise, Keys()] = Field(description="How well the capture system sees.")
+    noise: Annotated[Noise, Keys()] = Field(description="Noise of the capture system.")
     uncertainty: UncertaintyModel = Field(  # pyright: ignore[reportInvalidTypeForm] - it is made
         default_factory=UncertaintyModel, description="How well nominal values are known."
     )
@@ -260,13 +260,12 @@ class ExperimentModel(FileModel):
     )
     markers: Annotated[MarkersModel | None, SkipValidation] = Field(
         default=None,
-        description="Where the markers sit; else it is learnt from the "
-        "recordings, which the robot has to drive in while its joint moves.",
+        description="Where the markers sit; otherwise estimated from the recordings, in which the "
+        "robot has to drive while its joint moves.",
     )
     columns: ColumnsModel = Field(  # pyright: ignore[reportInvalidTypeForm] - it is made
-        default_factory=ColumnsModel,
-        description="Columns of text files that have another name, or another unit.",
+        default_factory=ColumnsModel, description="Columns of text files with other names or units."
     )
     servo_counts: Annotated[CountScale, Keys()] = Field(
-        default_factory=CountScale, description="What the counts of servo logs mean."
+        default_factory=CountScale, description="The scale of the counts in servo logs."
     )

@@ -87,7 +87,7 @@ def model_of(machine: Machine) -> Any:
         "One recording.",
         {
             "file": (str, Field(description="Its file, CSV or JSON, relative to this one.")),
-            "use": (Use, Field(default="fit", description="holdout: kept back, to check the fit.")),
+            "use": (Use, Field(default="fit", description="holdout: kept back to check the fit.")),
             "columns": _optional_section(columns, "Its own columns."),
         },
     )
@@ -103,7 +103,7 @@ def model_of(machine: Machine) -> Any:
                 Field(description="Nominal values."),
             ),
             "uncertainty": _optional_section(uncertainty, "How well they are known."),
-            "noise": _optional_section(noises, "How well it is seen."),
+            "noise": _optional_section(noises, "Noise of the measurements."),
             "columns": _optional_section(columns, "Columns of the recordings."),
             "recordings": (
                 Annotated[list[entry], SkipValidation],
@@ -158,7 +158,7 @@ def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None
         own = {**_given(model.columns if model else None), **_given(read.columns)}
         planned.append(PlannedRecording(file.parent / read.file, read.use, own))
     if not any(one.use == "fit" for one in planned) and not has_errors(issues):
-        message = "No recording is to be fitted. Give at least one `use: fit`."
+        message = "No recording is marked to be fitted. Give at least one `use: fit`."
         issues.append(document.error(("recordings",), message))
     if model is None or has_errors(issues):
         return None, issues

@@ -57,18 +57,18 @@ class ProblemModel(FileModel):
     )
     limits: Annotated[Limits, Keys()] = Field(
         default_factory=Limits,
-        description="What a gait may ask of the robot. What is not given is what the robot's servo "
-        "can do.",
+        description="What a gait may demand of the robot. Limits not given are those of the "
+        "robot's servo.",
     )
-    direction: Direction = Field(default="either", description="Which way the robot shall go.")
+    direction: Direction = Field(default="either", description="Which way the robot is to drive.")
     objective: Objective = Field(
         default="speed",
-        description="What is best: the largest speed, or the least cost of transport.",
+        description="What to optimise: the highest speed or the lowest cost of transport.",
     )
     robust: Annotated[Spreads, Keys()] | None = Field(
         default=None,
-        description="How well the robot is known. With it a gait is sought too that is fast on "
-        "95 % of the robots that it may be.",
+        description="How well the robot is known. If given, also find a gait that is fast on 95 % "
+        "of the robots within this uncertainty.",
     )
 
 
@@ -316,21 +316,21 @@ def _contradictions(model: ProblemModel, robot: Robot, document: FileData) -> It
         yield document.error(("gait", "shape"), message)
     if model.robust and (model.gait.shape != "sine" or model.objective != "speed"):
         message = (
-            "Read `robust` with another shape than a sine or another objective than the speed. "
-            "Expected neither: robust gaits are sines that are fast. Leave one of them out."
+            "Read `robust` with a shape other than a sine or an objective other than the speed. "
+            "Expected neither: robust gaits are fast sines. Leave one of them out."
         )
         yield document.error(("robust",), message)
     if ratio := model.inertia_ratio:
         yield from ratio_findings(ratio, robot, document)
         written = document.data["inertia_ratio"]
         if ratio.by == "inertia" and isinstance(written, dict) and "loads" in written:
-            message = "Loads are given and not used. Write `by: loads`, or delete them."
+            message = "Loads are given but not used. Write `by: loads`, or delete them."
             yield document.warning(("inertia_ratio", "loads"), message)
     servo, least = robot.servo, model.gait.amplitude.low
     largest = servo.angle_limit if model.limits.angle is None else model.limits.angle
     if least > largest:
         message = (
-            f"Read amplitudes of {least:.4g} rad and more, beyond the largest joint angle, "
+            f"Read amplitudes of {least:.4g} rad and more, above the largest joint angle, "
             f"{largest:.4g} rad. No gait has them. Lower the bound; degrees need their unit, as in "
             f"`{least:.4g} deg`."
         )
@@ -342,7 +342,7 @@ def _contradictions(model: ProblemModel, robot: Robot, document: FileData) -> It
     ):
         if given is not None and given > able * (1 + 1e-9):
             message = (
-                f"Read {shown(document.data['limits'][key])}, beyond what the robot's servo can "
-                f"do, {able:.4g} {unit}. Lower it, or raise `servo.{key}_limit` of the robot."
+                f"Read {shown(document.data['limits'][key])}, more than the robot's servo can do, "
+                f"{able:.4g} {unit}. Lower it, or raise `servo.{key}_limit` of the robot."
             )
             yield document.warning(("limits", key), message)

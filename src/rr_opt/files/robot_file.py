@@ -42,7 +42,7 @@ def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
     if robot.h > longest:
         yield (
             ("h",),
-            f"The wheel radius is {robot.h:.4g} m, more than any length of the platforms. Plain "
+            f"The wheel radius is {robot.h:.4g} m, larger than any length of the platforms. Plain "
             f"numbers are metres: write `{robot.h:g} mm` for millimetres.",
         )
     ratio = inertia_ratio(robot, "joint")
@@ -50,7 +50,7 @@ def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
         yield (
             ("platform2", "I"),
             f"The inertia ratio J20/J10 about the joint is {ratio:.3g}. Expected 0.01 to 100: the "
-            "platforms hardly belong together. Check the units of m, I, c and a of both.",
+            "platforms hardly match. Check the units of m, I, c and a of both.",
         )
 
 
@@ -72,9 +72,9 @@ def singular_posture(robot: Robot) -> str | None:
     if singular >= limit:
         return None
     return (
-        f"Within {limit:.4g} rad lies the singular posture |phi| = arccos(-c2/c1) = "
-        f"{singular:.4g} rad, where a model without side slip means nothing. A problem keeps "
-        "its distance with `limits.singularity`."
+        f"The servo's range, {limit:.4g} rad, includes the singular posture |phi| = arccos(-c2/c1) "
+        f"= {singular:.4g} rad, where a model without side slip is meaningless. A problem stays "
+        "clear of it with `limits.singularity`."
     )
 
 
@@ -85,8 +85,8 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
         yield (
             "a",
             f"a = {platform.a:.4g} m puts the centre of mass beyond the joint (c = "
-            f"{platform.c:.4g} m). a counts from the axle towards the "
-            "joint; check that it is not the distance from the joint.",
+            f"{platform.c:.4g} m). a is measured from the axle towards the joint; check that it is "
+            "not the distance from the joint.",
         )
     if longest > _LARGEST_LENGTH:
         yield (
@@ -148,7 +148,7 @@ class _EffectsSchema:
 class RobotModel(FileModel):
     """A Roller Racer. Plain numbers are SI; a text may carry a unit, such as 186 mm."""
 
-    name: str = Field(default="", description="What people call this robot.")
+    name: str = Field(default="", description="The robot's name.")
     platform1: PlatformModel = Field(description="The platform whose heading is psi.")
     platform2: PlatformModel = Field(description="The platform that the servo turns by phi.")
     h: Annotated[float | None, Key(SYMBOLS["h"].quantity)] = Field(

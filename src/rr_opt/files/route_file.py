@@ -53,7 +53,7 @@ class RouteModel(FileModel):
         min_length=1, description=f"The pieces, one after another: each is {_ONE}."
     )
     tolerance: Annotated[Tolerance, Keys()] = Field(
-        default_factory=Tolerance, description="How exactly the route is driven."
+        default_factory=Tolerance, description="How accurately the route is driven."
     )
     direction: Direction = Field(
         default="either",
@@ -155,7 +155,7 @@ def routes_from(document: FileData, file: Path) -> tuple[RouteStudy | None, list
     model, issues = validate(StudyModel, document)
     for key in document.data:
         if key in ("problem", "vary", "together"):
-            message = f"Read `{key}` beside `routes`. Expected one or the other. Delete one."
+            message = f"Read `{key}` as well as `routes`. Expected one or the other. Delete one."
             issues.append(document.error((key,), message))
     routes = list[Route]()
     for name in (model and model.routes) or ():

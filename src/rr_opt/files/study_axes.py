@@ -78,7 +78,7 @@ class StudyModel(FileModel):
     )
     together: list[Varied] = Field(
         default_factory=list,
-        description="Groups of keys whose values, as many for each key, are taken in step.",
+        description="Groups of keys with equally many values each, which are varied in step.",
     )
     routes: list[str] | None = Field(
         default=None,
@@ -177,7 +177,7 @@ def _below(
 def _unknown(before: KeyPath, part: str | int, known: list[str]) -> str:
     place = f"`{path_text(before)}`" if before else "a problem"
     if isinstance(part, int):
-        return f"Read the index [{part}]. Expected a key: {place} is no list. Delete the index."
+        return f"Read the index [{part}]. Expected a key: {place} is not a list. Delete the index."
     if not known:
         return f"Read `{part}` below {place}. Expected nothing: it has no keys. Delete `.{part}`."
     return unknown_word(part, list(dict.fromkeys(known)), f"key below {place},")
@@ -444,7 +444,7 @@ def axes_of(document: FileData) -> tuple[list[Axis], list[Issue]]:
         lengths = {line.key.name: len(line.values) for line in good}
         if len(set(lengths.values())) > 1:
             counts = ", ".join(f"{count} of `{name}`" for name, count in lengths.items())
-            note(place, f"Read {counts}. Expected as many of each, to take them in step.")
+            note(place, f"Read {counts}. Expected equally many of each, to vary them in step.")
         elif good and len(good) == len(lines):
             axis = Axis(tuple(good))
             try:

@@ -206,7 +206,7 @@ class _Reading:
         text: str = event.value
         if any("\ud800" <= letter <= "\udfff" for letter in text):
             self._note(
-                "The text holds half a character. Write it again.", event.start_mark.line + 1, path
+                "The text contains half a character. Retype it.", event.start_mark.line + 1, path
             )
             return None
         if event.style is not None:

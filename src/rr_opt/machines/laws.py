@@ -69,8 +69,8 @@ COULOMB = _joint(
 )
 STRIBECK_FRICTION = _joint(
     "stribeck_friction",
-    "friction that is higher while the joint is slow (Stribeck)",
-    "The bearing resists more while it is slow.",
+    "friction that rises at low speed (Stribeck)",
+    "The bearing resists more at low speed.",
     _torque(),
     lambda v, c: -c.torque * sign(v.w) * ca.exp(-((v.w / STRIBECK) ** 2)),
 )
@@ -84,7 +84,7 @@ QUADRATIC_DRAG = _joint(
 LOAD_FRICTION = _joint(
     "load_friction",
     "friction that grows with the load on the gears",
-    "The gears resist more, the more torque they transmit.",
+    "The more torque the gears transmit, the more they resist.",
     Constant("share", "dimensionless", lambda _: _SHARE, high=1.0),
     lambda v, c: -c.share * size(v.drive + v.load) * sign(v.w),
 )
@@ -100,8 +100,8 @@ SUPPLY_SAG = MachineEffect(
     "motor",
     "actuation",
     "torque",
-    "a supply that sags between where it is measured and the motor",
-    "The motor sees less voltage than was measured, the more current it draws.",
+    "a supply that sags between the measuring point and the motor",
+    "The more current the motor draws, the less of the measured voltage reaches it.",
     (Constant("resistance", "ohm", lambda _: 1.0),),
     lambda v, c: -c.resistance / v.R * v.duty**2 * v.drive,
 )
@@ -111,7 +111,7 @@ TORQUE_OFFSET = MachineEffect(
     "actuation",
     "torque",
     "a torque offset",
-    "The motor always gives more than its reading, by the same torque.",
+    "The motor's torque differs from its reading by a constant.",
     (_torque(low=-1e3),),
     lambda _, c: c.torque,
 )
@@ -120,8 +120,8 @@ ANGLE_OFFSET = MachineEffect(
     "measurement",
     "measurement",
     "torque",
-    "an offset of the angle",
-    "The angle is not zero where the machine hangs.",
+    "an angle offset",
+    "The angle is not zero when the machine hangs at rest.",
     (Constant("angle", "rad", lambda _: 0.03, -1.0, 1.0),),
     lambda v, c: v.gravity(v.q) - v.gravity(v.q + c.angle),
 )
@@ -156,7 +156,7 @@ def late(
     def law(t: Array, u: Signals, c: Names) -> Signals:
         return {one: delayed(t, u[one], getattr(c, constant)) for one in signals}
 
-    sentence = f"{words[0].upper()}{words[1:]} acts later than it is recorded."
+    sentence = f"{words[0].upper()}{words[1:]} acts later than recorded."
     return MachineEffect(name, "signal", "actuation", "signal", f"a delay of {words}", sentence,
                          (Constant(constant, "s", lambda _: 0.01, low, 0.3),), law)  # fmt: skip
 
@@ -167,6 +167,6 @@ def lagging(name: str, words: str, signal: str, tau: float) -> MachineEffect:
     def law(t: Array, u: Signals, c: Names) -> Signals:
         return {signal: lagged(t, u[signal], c.tau)}
 
-    sentence = f"{words[0].upper()}{words[1:]} follows its command late and smoothed."
+    sentence = f"{words[0].upper()}{words[1:]} follows its command with a lag."
     return MachineEffect(name, "signal", "actuation", "signal", f"a lag of {words}", sentence,
                          (Constant("tau", "s", lambda _: tau, 0.0, 2.0),), law)  # fmt: skip

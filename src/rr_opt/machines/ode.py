@@ -142,7 +142,7 @@ class OdeModel:
     def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
         """Errors of the outputs, in their own units."""
         pairs = zip(self._off(before), self._off(after), strict=True)
-        listed = ", ".join(f"{b[0]} was {b[1]:.3g} {b[2]} off and is {a[1]:.3g} {a[2]} off now"
+        listed = ", ".join(f"{b[0]} was {b[1]:.3g} {b[2]} off and is now {a[1]:.3g} {a[2]} off"
                            for b, a in pairs)  # fmt: skip
         return f"predicted over {self.horizon:.3g} s, {listed} (RMS); "
 

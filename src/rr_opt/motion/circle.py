@@ -75,7 +75,7 @@ def circle_of(cycle: Cycle) -> Circle:
     if abs(cycle.speed) <= _STILL:
         raise InputError(
             f"The gait moves the robot at {cycle.speed:.1e} m/s. Expected a gait that moves it: "
-            "one that stands still has no circle. Give an amplitude above 0."
+            "without motion there is no circle. Give an amplitude above 0."
         )
     centre = None
     if abs(cycle.dpsi) > STRAIGHT:

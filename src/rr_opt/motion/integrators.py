@@ -154,8 +154,8 @@ def cvodes(
         except RuntimeError as error:
             raise NotConvergedError(
                 f"The motion cannot be integrated from t = {k * length:.4g} s to "
-                f"{(k + 1) * length:.4g} s: it is too fast or has no end. Expected a robot of "
-                "believable size. `rr-opt lint` shows which values are not."
+                f"{(k + 1) * length:.4g} s: it is too fast or unbounded. Expected a robot of "
+                "plausible size. `rr-opt lint` shows which values are not."
             ) from error
         states.append(out[:, : inside.stop - inside.start])
         state = out[:, -1]

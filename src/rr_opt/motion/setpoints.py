@@ -167,7 +167,7 @@ def within_limits(
     if not low:
         raise InputError(
             "No amplitude keeps the set points within the limits. Expected steps of one count to "
-            "do. Lower --rate, raise the limits, or give --no-within-limits."
+            "be enough. Lower --rate, raise the limits, or give --no-within-limits."
         )
     return scaled(low)
 

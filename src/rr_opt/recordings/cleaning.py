@@ -159,8 +159,8 @@ def _of_noise(
         "channel": channel,
         "noise": size_text(channel, noise.sigma),
         "stated": size_text(channel, stated),
-        "whose": "follow from the markers' or bodies' noise" if by_fit else "are stated",
-        "remedy": "" if by_fit else f"Correct `{_KEYS[channel]}` if that is not intended.",
+        "whose": "follows from the noise of the markers or bodies" if by_fit else "was stated",
+        "remedy": "" if by_fit else f"Correct `{_KEYS[channel]}` if it is not as intended.",
     }
     if times > _MANY:
         yield notice("noise.large", **sizes)
@@ -208,13 +208,13 @@ def _of_jumps(recording: Recording, found: Mapping[str, Sequence[Jump]]) -> Iter
 
 def _why(channels: set[str]) -> str:
     if "phi" in channels and len(channels) > 1:
-        return "Missing time, or a blow?"
+        return "Missing time, or a knock?"
     if channels <= {"x", "y", "psi"} and channels & {"x", "y"}:
         return (
-            "Was the floor frame set anew, or has a marker another's name? Recordings share one "
+            "Was the floor frame reset, or are two marker labels swapped? Recordings share one "
             "floor frame: cut it there."
         )
-    return "A marker with another's name, or a blow?"
+    return "A swapped marker label, or a knock?"
 
 
 def _of_gaps(holes: Sequence[Gap]) -> Iterator[Notice]:

@@ -179,13 +179,13 @@ def _learnt(
         why = (
             "The robot drives too little to show the axes of its platforms."
             if found.axles is None
-            else "Neither its axles nor phi show which platform is the first."
+            else "Neither its axles nor phi show which is platform 1."
         )
     number, read = contents[0]
     message = (
         f"Read the markers {shown(', '.join(read.labels))}. Expected `markers`, the place of each "
-        f"on the robot, or recordings that show it: the robot drives and its joint moves. {why} "
-        "Add the key, or such a recording."
+        "on the robot, or recordings that show it, in which the robot drives and its joint moves. "
+        f"{why} Add the key, or such a recording."
     )
     return None, [plan.document.error(("recordings", number, "file"), message)]
 
@@ -198,7 +198,7 @@ def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Ar
     said = commanded_gait(planned.file)
     if said is None or np.allclose(said.angle(t), planned.gait.angle(t)):
         return []
-    message = "Read another gait than the file says was commanded. The one written here was taken."
+    message = "Read a gait other than the one the file says was commanded. This one was used."
     return [plan.document.warning(("recordings", number, "gait"), message)]
 
 
@@ -234,7 +234,7 @@ def checked(experiment: Experiment) -> tuple[dict[str, str], list[str]]:
         )
     elif not wrong and all(run.use != "fit" for run in kept):
         wrong.append(
-            "No recording to fit is left, so nothing can be learnt of this robot. Record some "
+            "No recording is left to fit, so nothing can be learnt about this robot. Record a few "
             "periods in which it drives."
         )
     return left_out, wrong

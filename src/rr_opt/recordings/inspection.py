@@ -82,8 +82,8 @@ def inspect_file(path: Path, known: Circumstances, *, layout: Path | None = None
     if places is not None and found.markers is None:
         refuse(
             str(layout),
-            f"Read the places of markers. Expected a marker file beside them, and {path.name} "
-            "has motion already. Omit --layout.",
+            f"Read the places of markers. Expected a marker file to go with them, but {path.name} "
+            "already has the motion. Omit --layout.",
         )
     return found
 

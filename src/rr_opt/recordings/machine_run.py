@@ -49,8 +49,8 @@ def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue
             original = copied(rows, seen)
             if original is not None:
                 raise InputError(
-                    f"Read the same motion as {original}. Expected another run: a copy is no "
-                    "evidence. Take one of the two away."
+                    f"Read the same motion as {original}. Expected a different run: a copy is no "
+                    "evidence. Remove one of the two."
                 )
         except InputError as error:
             where = ("recordings", k, "file")
@@ -68,7 +68,7 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
     keep = np.append(True, np.diff(np.maximum.accumulate(t)) > 0) & np.isfinite(t)
     doubts = []
     if not keep.all():
-        doubts.append(f"Rows left out, as their times repeat or fall back: {(~keep).sum()}.")
+        doubts.append(f"Rows dropped because their times repeat or run backwards: {(~keep).sum()}.")
     data = {c.name: _channel(one, table, c)[keep] for c in machine.channels}
     t = t[keep]
     if t.size < _FEWEST:
@@ -86,7 +86,7 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         y[known] = np.unwrap(data[c.name][known]) if c.angle else data[c.name][known]
         y, wild = _without_wild(y)
         if wild:
-            doubts.append(f"{c.name}: wild samples left out: {wild}.")
+            doubts.append(f"{c.name}: outliers dropped: {wild}.")
         inner = c in machine.inputs
         if inner or c.angle:
             known = np.isfinite(y)
@@ -175,7 +175,7 @@ def _impossible(
         y = data[c.name]
         if np.nanstd(y) < 20 * noise_of(y):
             said.append(
-                f"{c.name} hardly moves ({np.nanstd(y):.3g} {c.unit} in all): it says little."
+                f"{c.name} hardly moves ({np.nanstd(y):.3g} {c.unit} in all): it tells little."
             )
         for u in inputs:
             x = data[u.name]
@@ -187,10 +187,10 @@ def _impossible(
             crossed = float(np.abs(np.diff(along)).sum())
             if along.size > _MANY and crossed < _CROSSED * np.ptp(x) and u.unit == "N m":
                 said.append(
-                    f"{u.name} is a function of {c.name}: a command, and not a measurement?"
+                    f"{u.name} is a function of {c.name}: a command rather than a measurement?"
                 )
         if stuck := _stuck(y):
-            said.append(f"{c.name} stands still to the last digit and jumps on, {stuck} times.")
+            said.append(f"{c.name} is frozen to the last digit and then jumps, {stuck} times.")
     return said
 
 

@@ -243,7 +243,7 @@ def log_notices(
         yield notice("log.goal", scale=goal.scale)
     if others:
         also = ", ".join(f"{other:+.3f}" for other in others[:3])
-        taken = f"{'nearest to none' if shift else 'of the longest overlap'}"
+        taken = f"{'closest to zero' if shift else 'with the longest overlap'}"
         yield notice("log.offsets", others=also, taken=taken)
     if abs(fit.scale - 1) > max(_LESS, _SURE * fit.sigma[2]):
         yield notice("log.scale", scale=fit.scale)
@@ -255,8 +255,8 @@ def _of_shift(shift: Shift) -> Iterator[Notice]:
     play = ""
     if shift.play:
         play = (
-            " phi moves less than the servo's shaft. What gives between them may make it late by "
-            f"up to {1e3 * shift.play:.2g} ms, and that looks like an offset too."
+            " phi moves less than the servo's shaft. Compliance between them may delay it by up to "
+            f"{1e3 * shift.play:.2g} ms, which also looks like an offset."
         )
     if shift.applied:
         drift, half = 1e6 * shift.drift, 1.96e6 * shift.sigma[1]

@@ -11,6 +11,7 @@ from rr_opt.documents.rendering import terminal
 from rr_opt.effects import CATALOGUE
 from rr_opt.files.record import robot_yaml
 from rr_opt.formatting import counted, words_of
+from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.robot import Robot
 from rr_opt.results import diagnosis_tables as tables
@@ -66,7 +67,7 @@ class ExplainedExperiment(Explained[Experiment]):
             return None
         empirical = any(not CATALOGUE[use.name].candidate for use in self.corrected_robot.physics)
         if self.verdict == "unexplained" and not (empirical and self.found.after < _PREDICTS):
-            return unknown("the corrected robot lacks the physics that has no name.")
+            return unknown("the corrected robot still lacks the unidentified physics.")
         return loss_of(self.experiment, self.corrected_robot)
 
     @property
@@ -95,7 +96,7 @@ class ExplainedExperiment(Explained[Experiment]):
         if self.marked:
             return "held-out recordings"
         several = len(self.found.final) > 1
-        return "each recording, from the others" if several else "the one recording, fitted"
+        return "each recording, left out in turn" if several else "the only recording, fitted"
 
     @property
     def proof(self) -> tuple[int, ...]:
@@ -209,28 +210,28 @@ def chain(one: ExplainedExperiment) -> doc.Chain:
 def chain_note(one: ExplainedExperiment) -> str:
     """What the chain highlights, and where the fault shows."""
     if not one.found.stages:
-        lit = "" if one.found.channel == "none" else " Lit: where the accepted effect acts."
-        return f"The stages were not tested one by one.{lit}"
+        lit = "" if one.found.channel == "none" else " Highlighted: where the accepted effect acts."
+        return f"The stages were not tested individually.{lit}"
     where = f"{one.where[0].upper()}{one.where[1:].removesuffix('.')}. " if one.where else ""
     if not one.guilty:
-        return f"{where or 'No channel has a significant fault. '}{_SIGMA}"
+        return f"{where or 'No channel shows a significant fault. '}{_SIGMA}"
     return (
-        f"{where}Lit: where an unknown input would explain most of the misfit of the nominal "
-        f"model; the motion passes the fault on to the other channels. {_SIGMA}"
+        f"{where}Highlighted: where an unknown input would explain most of the nominal model's "
+        f"misfit; the motion carries the fault into the other channels. {_SIGMA}"
     )
 
 
 _SIGMA = (
     "Percentages: the share of the misfit that an unknown input there would explain, with the "
     "robot's values re-fitted. All misfits on this page are RMS in σ, one standard deviation of "
-    "the noise, so 1 is the noise alone."
+    "the noise, so 1 is noise alone."
 )
 
 
 def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     found = one.found
     yield doc.Fact("misfit before", f"{found.before:.2f} σ", one.proven_on)
-    yield doc.Fact("misfit now", f"{found.after:.2f} σ", "1 is the noise alone")
+    yield doc.Fact("misfit now", f"{found.after:.2f} σ", "1 is noise alone")
     for finding in found.findings[:3]:
         if found.verdict == "missing_physics":
             name = tables.candidate_words([finding.name])
@@ -241,14 +242,13 @@ def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
             yield doc.Fact(name.replace("_", " "), value, f"95 %: {interval.rstrip(']')}")
     if isinstance(one.loss, Loss):
         lost = share_lost(one.loss)
-        yield doc.Fact("speed lost", lost, "by driving the best gait of the nominal model")
+        yield doc.Fact("speed lost", lost, "by driving the nominal model's best gait")
 
 
 def _open(one: ExplainedExperiment) -> Iterator[str]:
     found = one.found
     for group in found.indistinguishable:
-        names = " from ".join(tables.candidate_words([name]) for name in group)
-        yield f"These recordings cannot distinguish {names}."
+        yield f"These recordings cannot distinguish between {listed(map(words_of, group))}."
     if found.verdict != "consistent":
         yield f"Remainder: {tables.remainder_text(found.remainder)}. {found.remainder.matters}"
     yield from (each.sentence for each in found.residue)
@@ -267,7 +267,7 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
         yield doc.Fact("  where", f"{place}{one.where}")
     for finding in found.findings:
         yield from _finding(finding, found.verdict)
-    proof = counted(len(one.proof), "held out recording") if one.marked else one.proven_on
+    proof = counted(len(one.proof), "held-out recording") if one.marked else one.proven_on
     misfit = f"{found.before:.2f} before, {found.after:.2f} after, in units of the noise"
     yield doc.Fact("misfit", f"{misfit} ({proof})")
     for stage, word in zip(found.stages, tables.stage_words(found.stages), strict=True):
@@ -278,9 +278,9 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     if found.verdict != "consistent":
         yield doc.Fact("remainder", tables.remainder_text(found.remainder))
     for each in found.residue:
-        yield doc.Fact("left over", each.sentence)
+        yield doc.Fact("residual", each.sentence)
     if one.loss is not None:
-        yield doc.Fact("lost speed", loss_line(one.loss))
+        yield doc.Fact("speed lost", loss_line(one.loss))
     if found.next_experiment is not None:
         yield doc.Fact("record next", found.next_experiment.sentence)
     yield doc.Fact("took", f"{sum(found.seconds.values()):.0f} s")

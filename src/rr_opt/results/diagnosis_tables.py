@@ -72,7 +72,7 @@ def headline(
         return f"The model is right, but {values} differ{'s' * (len(names) < 2)} from nominal"
     if found.verdict == "missing_physics":
         return f"The model leaves out {listed(map(effect, names)) or 'something'}"
-    return "Physics is missing, and no known effect accounts for it"
+    return "Physics is missing, but no known effect accounts for it"
 
 
 def value_text(one: Estimate) -> str:
@@ -189,9 +189,9 @@ def effects_table(found: Diagnosis) -> doc.Table:
 
 
 _CANDIDATES = (
-    "Each row was fitted to the fitted recordings, with the parameters re-estimated. "
-    "Score: twice the loss of log predictive density, each recording predicted from the others; "
-    "lower is better. Misfit: RMS residual of simulation in the fitted recordings; 1 is the noise."
+    "Each candidate was fitted to the recordings in use, with the parameters re-estimated. Score: "
+    "twice the loss in log predictive density, with each recording predicted from the others; "
+    "lower is better. Misfit: RMS simulation residual over the fitted recordings; 1 is noise alone."
 )
 
 
@@ -202,7 +202,7 @@ def candidates_table(found: Diagnosis) -> doc.Table:
         tried[:_MOST],
         {
             "Effects": lambda each: _candidate(each, tried),
-            "Score over the best": lambda each: f"+{each.score - tried[0].score:.0f}",
+            "Score above the best": lambda each: f"+{each.score - tried[0].score:.0f}",
             "Misfit": lambda each: f"{total(each.fit):.2f} σ",
             "Verdict": lambda each: doc.Badge("accepted", "good") if each.accepted else "",
         },
@@ -263,8 +263,8 @@ def misfit_table(found: Diagnosis) -> doc.Table:
 
     note = (
         "With the robot's values re-fitted within their stated uncertainty, the fitted recordings "
-        f"leave a misfit of {total(off.rms):.2f} σ; noise alone leaves that much or more "
-        f"with probability {off.p_value:.2g}."
+        f"have a misfit of {total(off.rms):.2f} σ; noise alone would give that much or more with "
+        f"probability {off.p_value:.2g}."
     )
     columns = {
         "Recording": lambda pair: pair[1].recording,

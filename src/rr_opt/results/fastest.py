@@ -276,7 +276,7 @@ class FastestGait(Result):
 
     def _found(self, what: str) -> str:
         if self.cost:
-            return f"The {what} of least cost of transport found, {number(self.cost)},"
+            return f"The {what} with the lowest cost of transport found, {number(self.cost)},"
         return f"The fastest {what} found"
 
     @property
@@ -296,14 +296,14 @@ class FastestGait(Result):
             texts.append(f"It is valid away from {names}, which no steady motion can include.")
         ties = len(self.optimum.ties)
         if ties:
-            texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
+            texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} just as fast: a tie.")
         sine = self.optimum.sine
         if sine:
             gain = 100 * (abs(best.speed) / sine - 1)
             texts.append(f"That is {gain:.1f} % faster than the fastest sine.")
         if beyond := self._beyond_servo(best.gait):
             texts.append(
-                "But the problem allows more than the robot's servo: the gait exceeds its "
+                "But the problem allows more than the robot's servo does: the gait exceeds its "
                 f"{listed(beyond)} limit."
             )
         if self.sweep and math.isnan(self.sweep.error):
@@ -468,10 +468,10 @@ def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:
     without = optimum.best.speed if optimum.best else math.nan
     change, gain = speed / without - 1, abs(speed / found.start.speed) - 1
     text = (
-        f"The optimiser does not know {names}. Without, its optimum is {1e3 * without:+.2f} mm/s, "
-        f"which every check confirms; with {'it' if len(found.beyond) == 1 else 'them'} the speed "
-        f"changes by {100 * change:+.2g} %, including the {100 * gain:.2g} % gained by a local "
-        "search. The gait is a local optimum; no sweep checks it."
+        f"The optimiser does not model {names}. Its own optimum is {1e3 * without:+.2f} mm/s, "
+        f"which every check confirms; with all effects the speed changes by {100 * change:+.2g} %, "
+        f"including the {100 * gain:.2g} % gained by a local search. The gait is a local optimum; "
+        "no sweep checks it."
     )
     if len(found.driven.speeds) > 1:
         low, high = (1e3 * end(found.driven.speeds) for end in (min, max))

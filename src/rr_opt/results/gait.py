@@ -73,12 +73,12 @@ def ignored_effects(robot: Robot, *, commanded: bool = False) -> tuple[str, ...]
     if not names:
         return ()
     text = (
-        f"{listed(names)} {'is' if len(names) == 1 else 'are'} ignored: the motion is "
-        "computed for a level, uniform floor without side slip"
-        f"{'' if commanded else ' and for the angle that the servo makes'}."
+        f"{listed(names)} {'is' if len(names) == 1 else 'are'} ignored: the motion is computed for "
+        "a level, uniform floor without side "
+        f"slip{'' if commanded else ' and for the angle that the servo reaches'}."
     )
     if of_servo:
-        text += f" Command the servo so that it makes this angle despite {listed(of_servo)}."
+        text += f" Command the servo so that it follows this angle despite {listed(of_servo)}."
     return (text,)
 
 
@@ -120,4 +120,4 @@ def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:
         yield f"servo.{key}", kind.words, kind.both(getattr(robot.servo, key))
     for use in robot.physics:
         for parameter, value in use.values.items():
-            yield f"physics.{use.name}.{parameter}", "effect beyond the paper", number(value)
+            yield f"physics.{use.name}.{parameter}", "effect not in the paper", number(value)

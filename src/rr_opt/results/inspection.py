@@ -391,7 +391,7 @@ class InspectedMachine(Result):
         sections = [doc.Section(run.name, tuple(self._blocks(run))) for run in experiment.runs]
         what = f"{counted(len(experiment.runs), 'recording')} of {experiment.machine.words}"
         sections.append(doc.gallery(figures))
-        dropped = "Wild samples were left out."
+        dropped = "Outliers were dropped."
         report = _report(experiment.name, self.sha256, what, count, dropped, sections)
         return replace(report, machine=experiment.machine.name.capitalize())
 

@@ -123,16 +123,14 @@ def loss_of(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
     harmless = (Port.ACTUATION, Port.MEASUREMENT)
     gone = [n for n in ignored_in_steady_cycle(corrected) if CATALOGUE[n].port not in harmless]
     if gone:
-        names = listed(map(words_of, gone))
-        have = "has" if len(gone) == 1 else "have"
-        return unknown(f"{names} {have} no place in a steady motion.")
+        return unknown(f"no steady motion can include {listed(map(words_of, gone))}.")
     try:
         before, after = (maximize_speed(_problem(one)) for one in (experiment.robot, corrected))
         if before.best is None or after.best is None or after.ratio is None:
             return unknown(next(one.message for one in (before, after) if one.best is None))
         believed, best = before.best, after.best
         if check_optimum(after.problem, best.gait, after.ratio, best.speed).better:
-            return unknown("a plain sweep finds a faster gait for the corrected robot.")
+            return unknown("a grid sweep finds a faster gait for the corrected robot.")
         reached = steady_cycle(corrected, servo_made(corrected, believed.gait)).speed
     except RollerRacerError as error:
         return unknown(str(error))
@@ -147,7 +145,7 @@ def loss_of(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
 
 def unknown(why: str) -> LossUnknown:
     """No loss, and why."""
-    return LossUnknown(f"The speed that the nominal model's best gait would lose is unknown: {why}")
+    return LossUnknown(f"The speed lost with the nominal model's best gait is unknown: {why}")
 
 
 def _problem(robot: Robot) -> Problem:
@@ -167,7 +165,7 @@ def share_lost(one: Loss) -> str:
     """`12 %`; `less than 0.05 %`; `more than all` if the robot drives the other way; none if its
     own best gait, which respects the limits, is slower."""
     if one.share > 1:
-        return "more than all"
+        return "over 100 %"
     if one.share < -_NONE:
         return "none"
     if one.share < _NONE:
@@ -177,8 +175,8 @@ def share_lost(one: Loss) -> str:
 
 def _why(one: Loss) -> str:
     if one.share > 1:
-        return ", as it drives the robot the other way"
-    return ", as it takes the corrected robot beyond its limits" if one.share < -_NONE else ""
+        return ", as it drives the robot in the opposite direction"
+    return ", as it exceeds the corrected robot's limits" if one.share < -_NONE else ""
 
 
 def pace(speed: float) -> str:
@@ -195,11 +193,11 @@ def loss_sentences(one: Loss | LossUnknown | None) -> str:
     text = (
         f"The best gait of the nominal robot ({gait_words(one.believed)}) promises "
         f"{pace(one.promised)}; the corrected robot reaches {pace(one.reached)} with it. Its own "
-        f"best gait ({gait_words(one.best)}) reaches {pace(one.speed)}. "
-        f"Speed lost through the wrong model: {share_lost(one)}{_why(one)}."
+        f"best gait ({gait_words(one.best)}) reaches {pace(one.speed)}. Speed lost to the wrong "
+        f"model: {share_lost(one)}{_why(one)}."
     )
     if one.unseen:
-        text += " These gaits demand more than any recorded one: this is a prediction."
+        text += " These gaits are more demanding than any recorded one: an extrapolation."
     return text
 
 

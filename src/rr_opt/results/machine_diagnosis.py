@@ -9,7 +9,8 @@ import numpy as np
 from rr_opt.documents import document as doc
 from rr_opt.documents.rendering import terminal
 from rr_opt.files.record import rounded, yaml_text
-from rr_opt.formatting import with_unit
+from rr_opt.formatting import with_unit, words_of
+from rr_opt.messages import listed
 from rr_opt.model.machine import MachineExperiment, MachineRun
 from rr_opt.results import diagnosis_tables as tables
 from rr_opt.results.explained import Explained
@@ -77,7 +78,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
             },
         )
         sections: dict[str, tuple[doc.Block, ...]] = {
-            "Errors of prediction": (self._errors(),),
+            "Prediction errors": (self._errors(),),
             "Where it goes wrong": tuple(faults),
             "What remains open": tuple(self._open()),
             "What was tried": (tables.candidates_table(found),),
@@ -107,7 +108,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
 
     def _open(self) -> Iterator[str]:
         for group in self.found.indistinguishable:
-            yield f"These recordings cannot distinguish {tables.candidate_words(group)}."
+            yield f"These recordings cannot distinguish between {listed(map(words_of, group))}."
         left = self.found.remainder
         yield f"Remainder: {tables.remainder_text(left)}. {left.matters}"
 
@@ -122,7 +123,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
                 errors = self.errors(held_out=held)[channel.name]
                 shown = [with_unit(x, channel.unit, 3) for x in errors.values()]
                 rows.append(["held out" if held else "fitted", channel.words, *shown])
-        note = f"RMS over windows of {self.window:g} s, whose initial states alone are fitted."
+        note = f"RMS over windows of {self.window:g} s; only their initial states are fitted."
         head = ["Recordings", "Output", "Nominal", "Values fitted", "Corrected"]
         return doc.table(head, rows, note)
 

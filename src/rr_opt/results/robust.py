@@ -56,8 +56,8 @@ class Robust:
             Check(
                 min(self.reaching, self.keeping) >= RELIABLE - SHORT,
                 f"{DRAWN} other robots drawn: {100 * self.reaching:.1f} % reach the speed that "
-                f"{share} are to reach with the robust gait, and {100 * self.keeping:.1f} % keep "
-                f"the limit on torque (tolerance {100 * SHORT:g} %).",
+                f"{share} should reach with the robust gait, and {100 * self.keeping:.1f} % keep "
+                f"the torque limit (tolerance {100 * SHORT:g} %).",
             )
         ]
 
@@ -65,13 +65,13 @@ class Robust:
         """The price of certainty; best: the speed of the nominal optimum, m/s."""
         speed, without = (1e3 * abs(one) for one in (self.speed, self.without))
         slower = 1 - abs(self.nominal / best)
-        first = f"95 % of the robots that this one may be reach {speed:.1f} mm/s with "
+        first = f"95 % of robots within its uncertainty reach {speed:.1f} mm/s with "
         if slower < _ALIKE:
-            return f"{first}it, and no other gait takes more of them further."
+            return f"{first}it, and no other gait does better."
         return (
-            f"{first}the robust gait, which goes {100 * slower:.2g} % slower on the nominal robot. "
+            f"{first}the robust gait, which is {100 * slower:.2g} % slower on the nominal robot. "
             f"With the nominal gait they reach {without:.1f} mm/s, and {100 * self.kept:.0f} % "
-            "keep the limit on torque."
+            "keep the torque limit."
         )
 
     def section(self) -> doc.Section:

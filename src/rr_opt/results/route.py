@@ -117,14 +117,14 @@ class DrivenRoute(Result):
         checks = [
             Check(
                 end,
-                f"End by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
+                f"End point by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
                 f"{1e3 * asked.position:.4g}), and the heading is off by "
                 f"{math.degrees(replay.heading):.2f} deg (at most "
                 f"{math.degrees(asked.heading):.4g}).",
             ),
             Check(
                 replay.path <= asked.path,
-                f"Way by CVODES: P stays within {1e3 * replay.path:.1f} mm of the path (at most "
+                f"Path by CVODES: P stays within {1e3 * replay.path:.1f} mm of the path (at most "
                 f"{1e3 * asked.path:.4g}).",
             ),
             Check(
@@ -133,7 +133,7 @@ class DrivenRoute(Result):
                 + (
                     f"{worst} is exceeded by {100 * replay.excess:.2g} %."
                     if replay.excess > 0
-                    else f"all are kept, the nearest with {-100 * replay.excess:.2f} % to spare."
+                    else f"all are kept, the tightest with {-100 * replay.excess:.2f} % to spare."
                 ),
             ),
         ]
@@ -170,7 +170,7 @@ class DrivenRoute(Result):
         unreliable shadow prices."""
         drive, grip = self.plan.drive, self.replay.reached["grip"] if self.replay else 0.0
         short = drive is not None and drive.stationarity > _OPTIMAL
-        prices = "The solver stopped short of an optimum: shadow prices are not to be relied on."
+        prices = "The solver stopped short of an optimum: the shadow prices are unreliable."
         return (*ignored_effects(self.robot), *slippery(grip), *([prices] if short else []))
 
     def _record(self) -> dict[str, Any]:

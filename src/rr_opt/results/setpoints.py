@@ -49,8 +49,8 @@ class ExportedGait(GaitResult):
         behind = lag(angles, self.points.rate, limit)
         return (
             f"A step between set points needs {both(needed)}, but the servo's rate limit is "
-            f"{both(limit)}: at it the servo is up to {number(1e3 * behind)} mrad behind. The cost "
-            "in speed ignores this.",
+            f"{both(limit)}: the servo lags by up to {number(1e3 * behind)} mrad. The cost in "
+            "speed ignores this.",
         )
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
@@ -163,7 +163,7 @@ def _facts(result: ExportedGait) -> Iterator[doc.Fact]:
     if not math.isclose(asked, sent, rel_tol=_NOTHING):
         change = f"lowered from {with_unit(asked, 'rad', 6)} ({100 * (sent / asked - 1):+.2f} %)"
         yield doc.Fact(
-            "  amplitude", f"{with_unit(sent, 'rad', 6)}, {change} to be within the limits"
+            "  amplitude", f"{with_unit(sent, 'rad', 6)}, {change} to stay within the limits"
         )
     yield doc.Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
     for name, change in cost.steps.items():

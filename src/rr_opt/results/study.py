@@ -189,7 +189,7 @@ class SolvedStudy(_Study):
         servo = self.study.problems[self.fastest].robot.servo
         if beyond := beyond_servo(servo, best.peak_angle, best.peak_rate, best.peak_torque):
             yield (
-                "The problem allows more than the robot's servo: the fastest case exceeds its "
+                "The problem allows more than the robot's servo does: the fastest case exceeds its "
                 f"{listed(name for name, *_ in beyond)} limit."
             )
         yield from slippery(best.peak_grip)
@@ -279,7 +279,7 @@ COSTS = ("peak_torque", "energy_per_metre", "cost_of_transport")
 
 _MOST_ROWS = 300
 _STARTED = {
-    "cold": "starts all over the bounds",
+    "cold": "starts across the bounds",
     "warm": "a neighbour's optimum",
     "warm and cold": "both",
 }
@@ -316,7 +316,7 @@ def _key_facts(result: SolvedStudy) -> tuple[doc.Fact, ...]:
         doc.Fact("have no feasible gait", str(counts[Status.INFEASIBLE])),
         doc.Fact("did not converge", str(counts[Status.NOT_CONVERGED])),
         doc.Fact("branches of optima", str(len({one for one in result.branches if one}))),
-        doc.Fact("cases solved from starts all over the bounds", str(cold)),
+        doc.Fact("cases solved from starts across the bounds", str(cold)),
         doc.Fact("least cost of transport", cost),
     )
 
@@ -382,7 +382,7 @@ class DrivenRoutes(_Study):
     @property
     def message(self) -> str:
         """The outcome in a sentence."""
-        return f"{self.counts[Status.OPTIMAL]} of {len(self.rows)} routes are driven."
+        return f"{self.counts[Status.OPTIMAL]} of {len(self.rows)} routes can be driven."
 
     @property
     def warnings(self) -> tuple[str, ...]:

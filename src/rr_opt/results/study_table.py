@@ -165,7 +165,7 @@ def study_columns(
         for case in range(len(rows))
     ]
     branch = "family of optima that it belongs to"
-    warm = "from cold initial guesses, or from neighbours' optima: warm"
+    warm = "cold: from initial guesses; warm: from neighbours' optima"
     return [
         StudyColumn("case", "1", "number of the case", range(len(rows))),
         *(
@@ -185,7 +185,7 @@ def study_columns(
         of_optima("drives", "", "which way", lambda one: direction_text(one.speed)),
         *(of_optima(*described, attrgetter(described[0])) for described in _OF_OPTIMUM),
         of_optima("held_by", "", "active limits and bounds", lambda one: "; ".join(one.held)),
-        StudyColumn("fronts", "", "costs of which no case is both faster and cheaper", on_fronts),
+        StudyColumn("fronts", "", "costs for which no case is both faster and cheaper", on_fronts),
         *(price(*named, "limit", attrgetter("prices")) for named in _LIMITS),
         *(price(*named, "active bound", attrgetter("bound_prices")) for named in _BOUNDS),
         expected(0, "least"),

@@ -220,7 +220,7 @@ class TurnChart(Result):
     def message(self) -> str:
         """The outcome in a sentence."""
         if self.tight is None:
-            return "None of the gaits tried turns and respects every limit. Widen the bounds."
+            return "None of the gaits tried both turns and respects every limit. Widen the bounds."
         radius, error = self.tight.radius, self.tight.error
         if radius < _SPIN:
             return (

@@ -335,7 +335,7 @@ def _why_not(route: Route, charts: dict[Way, Chart], paths: dict[Way, list[Leg]]
         what = "an arc" if isinstance(route.pieces[leg.piece], Arc) else "the way"
         circle = f"of radius {1 / abs(leg.curvature):.4g} m" if leg.curvature else "straight ahead"
         limits = binding_limits(gaits.problem, way, leg.curvature)
-        by = f" (in the way: {', '.join(f'limits.{name}' for name in limits)})" if limits else ""
+        by = f" (blocked by {', '.join(f'limits.{name}' for name in limits)})" if limits else ""
         nearest = _nearest(gaits, leg.curvature)
         reasons.append(f"{way}, piece {leg.piece + 1}, {what} {circle}, has no gait{by}; {nearest}")
     return "The route cannot be driven: " + ". And ".join(reasons) + "."
@@ -347,5 +347,5 @@ def _nearest(gaits: Chart, curvature: float) -> str:
     for k in same[np.argsort(np.abs(same - curvature))[:2000:20]]:
         if gaits.fastest(float(k)):
             side = "left" if k > 0 else "right"
-            return f"the nearest that has one is a radius of {1 / abs(k):.4g} m to the {side}"
-    return "no circle has one"
+            return f"the nearest feasible one is a radius of {1 / abs(k):.4g} m to the {side}"
+    return "no circle is feasible"

@@ -140,7 +140,7 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
             selection = selection.again(quieter)
         selection.run()
         if quieter := _quieter(selection):
-            watch.progress("the noise is less than it looked; once more")
+            watch.progress("the noise is lower than estimated: repeating")
             selection = selection.again(quieter)
             selection.run()
     result = chosen(selection, watch)

@@ -232,24 +232,24 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
         "consistent": f"The nominal model explains the recordings{refitted}.",
         "parameters": f"The model is right, but the value of {listed} is not.",
         "missing_physics": f"The model leaves out {listed} (confidence {sure}).",
-        "unexplained": "Something is left out, and no effect of the catalogue is shown to be it.",
+        "unexplained": ("Physics is missing; no effect in the catalogue is shown to be the cause."),
     }[found.verdict]
     held = any(one.held_out for one in found.final)
-    which = "recordings that were not fitted" if held else "the recordings, which were all fitted"
+    which = "held-out recordings" if held else "the recordings, all of which were fitted"
     before, after = (f"{one:.2f}" for one in (found.before, found.after))
     moved = "rose" if found.after > found.before else "fell"
     change = f"stayed at {after}" if before == after else f"{moved} from {before} to {after}"
-    misfit = f"On {which}, {worth}the misfit {change} sigma, where 1 is the noise."
+    misfit = f"On {which}, {worth}the misfit {change} sigma, where 1 is noise alone."
     remainder, remains = found.remainder, ""
     if found.verdict != "consistent" and remainder.size != "none":
         depends = f": {remainder.depends_on}" if remainder.depends_on else ""
         share = f"{100 * remainder.share:.0f} % of the misfit"
-        remains = f"What remains is {remainder.size} ({share}){depends}."
+        remains = f"The remainder is {remainder.size} ({share}){depends}."
     own = {one.name for one in found.findings}
     others = dict.fromkeys(n for some in found.indistinguishable for n in some if n not in own)
     rivals = " or ".join(map(words_of, others))
     tie = (
-        f"These recordings cannot distinguish that from {rivals}."
+        f"These recordings cannot distinguish this from {rivals}."
         if rivals and found.verdict == "missing_physics"
         else ""
     )

@@ -166,7 +166,7 @@ def residues(found: Sequence[Dependence], inputs: Mapping[str, str]) -> Iterator
     shown = [one for one in found if one.certain and one.curve.at.size]
     for one in shown[:2]:
         sentence = (
-            f"What is left looks like {where(one, inputs)}; that would explain "
+            f"The residual looks like {where(one, inputs)}, which would explain "
             f"{100 * one.share:.0f} % of it."
         )
         c = one.curve

@@ -144,7 +144,7 @@ class Selection:
 
     def drive(self) -> None:
         """Try effects of the drive, from its own recording."""
-        self.progress("looking at the drive")
+        self.progress("testing the actuation")
         self._upstream = [one for one in self.model.upstream() if one[0]]
         for choices, values in self._upstream:
             one = self.fitted(choices, [values], self.base)
@@ -153,14 +153,14 @@ class Selection:
 
     def _forward(self) -> None:
         """A forward step; the search is widened until one candidate clearly wins."""
-        self.progress("testing what may be missing")
+        self.progress("testing candidate effects")
         found = [*self._scored()]
         if self._settled(found):
             found += self._unscored()
         if not self._settled(found):
             found += self._extended()
         if not self._settled(found):
-            self.progress("looking where effects without derivatives may be")
+            self.progress("searching for effects without derivatives")
             found += self._proposed()
         best = _best(found)
         if best and best.predicts_better(self.best) and best.advances(self.best):

@@ -93,27 +93,27 @@ class Identification:
         """What predicts best and why it is not named, or which recordings show it; "" if nothing
         was found that predicts better than the nominal model."""
         if not self.best.choices and self.selection.complete(self.best):
-            return "The recordings that were fitted show none of it: fit those that do."
+            return "The fitted recordings do not show the missing physics: fit those that do."
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
         if not best.effects:
             return ""
         constant = self.constancy.probability
-        disagree = "recordings disagree on the values"
-        so_many = "so many effects can imitate anything"
+        disagree = "the recordings disagree on the values"
+        so_many = "that many effects can mimic almost anything"
         reasons = {
             disagree if constant <= SETTINGS.named else so_many: self._constant,
-            "more is left than machines differ from such models": self._as_machines_differ,
-            "the recordings that were not fitted do not bear it out": self._predicts,
+            "the remaining misfit exceeds the usual error of such models": self._as_machines_differ,
+            "the held-out recordings do not confirm it": self._predicts,
         }
         against = [reason for reason, likely in reasons.items() if likely <= SETTINGS.named]
         if not against and self.sound <= SETTINGS.named:
             against = [min(reasons, key=lambda reason: reasons[reason])]
         if not best.predicts_better(self.selection.base):
-            against = ["by too little to be sure: these recordings cannot tell"]
+            against = ["its lead is too small for these recordings to be conclusive"]
         elif not self.best.choices:
-            against = ["most of the misfit is left"]
+            against = ["most of the misfit remains"]
         names = listed(words_of(name) for name in best.effects)
-        return f"What predicts best is {names}, but {listed(against) or 'others do about as well'}."
+        return f"The best candidate is {names}, but {listed(against) or 'others do about as well'}."
 
     @property
     def _predicts(self) -> float:

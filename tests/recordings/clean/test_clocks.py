@@ -87,14 +87,14 @@ def test_a_lag_is_told_in_milliseconds_and_said_to_be_one_thing_with_a_clock():
     phi = GAIT.angle(T - 0.038) + rng.normal(0, 3e-3, len(T))
     (doubt,) = notices(phi)
     assert "phi lags its command by 38" in doubt
-    assert "the same effect" in doubt
+    assert "their effect is the same" in doubt
 
 
 def test_a_lead_is_the_clock_s():
     phi = GAIT.angle(T + 0.02) + np.random.default_rng(6).normal(0, 3e-3, len(T))
     (doubt,) = notices(phi)
     assert "phi leads its command by 20" in doubt
-    assert "servo that is late" not in doubt
+    assert "servo delay" not in doubt
 
 
 def test_no_lag_is_told_where_there_is_none_and_degrees_are_recognised():

@@ -116,7 +116,7 @@ def test_a_noise_that_is_not_the_stated_one_is_told():
 
     told = texts(clean(recording(change)))
     assert "The noise of y is 2." in told
-    assert "1 mm are stated" in told
+    assert "1 mm was stated" in told
 
 
 def test_a_noise_that_nobody_states_is_estimated():

@@ -67,7 +67,7 @@ def test_names_exchanged_in_the_layout_are_told_and_put_right():
     wrong = dict(LAYOUT.platform1)
     wrong["L1"], wrong["R1"] = wrong["R1"], wrong["L1"]
     found = fit_markers(markers(motion(), SIGMA, 3), Layout(wrong, LAYOUT.platform2), SIGMA)
-    assert "in the whole recording" in found.doubts[0]
+    assert "throughout the recording" in found.doubts[0]
     assert worst(found) < 5.5
 
 
@@ -101,5 +101,5 @@ def test_three_in_a_ring_and_two_pairs_at_once_are_put_right(names, rows):
     found = fit_markers(replace(data, positions=positions), LAYOUT, SIGMA)
     assert worst(found) < 5.5
     text = " ".join(doubt for doubt in found.doubts)
-    assert "swapped labels" in text or "in the whole recording" in text
+    assert "swapped labels" in text or "throughout the recording" in text
     assert all(name in text for name in names)

@@ -42,7 +42,7 @@ def test_p_is_that_of_the_known_layout_and_the_angles_differ_by_constants():
     for name in ("psi", "phi"):
         apart = found.recording.values[name] - known.values[name]
         assert apart.std() < 0.4 * np.median(known.sigma[name])
-    assert "Which platform is the first cannot be known" in found.doubts[0]
+    assert "Which platform is platform 1 cannot be determined" in found.doubts[0]
 
 
 def turns(layout):
@@ -128,7 +128,7 @@ def test_a_layout_that_is_off_by_millimetres_is_put_right_but_for_its_axes():
     data = markers(motion(), SIGMA, 1)
     found = fit_markers(data, wrong)
     assert abs(found.noise / SIGMA - 1) < 0.03
-    assert "from where the layout has it" in found.doubts[0]
+    assert "from its place in the layout" in found.doubts[0]
     known = fit_markers(data, LAYOUT).recording
     for name in ("psi", "phi"):
         apart = found.recording.values[name] - known.values[name]

@@ -49,7 +49,7 @@ def noisier(spoil):
 
 
 FRAMES = {
-    "x and y are exchanged": exchanged,
+    "x and y are swapped": exchanged,
     "x is mirrored": scaled(x=-1),
     "y is mirrored": scaled(y=-1),
     "psi has the other sign": scaled(psi=-1),
@@ -58,7 +58,7 @@ FRAMES = {
     "psi is off by 90 deg": moved(psi=np.pi / 2),
     "psi is off by -90 deg": moved(psi=-np.pi / 2),
     "phi is off by 180 deg": moved(phi=np.pi),
-    "platforms 1 and 2 are exchanged": platforms,
+    "platforms 1 and 2 are swapped": platforms,
     "x and y are 0.02 times too large": scaled(x=0.02, y=0.02),
 }
 
@@ -93,7 +93,7 @@ def test_exchanged_platforms_that_small_faults_explain_too():
     spoilt = recording(gait=gait, change=noisier(platforms))
     given = ExaminedRecording(spoilt, ROBOT, gait)
     assert given.forgiven.size < ROLLING < given.slip.size < FAR
-    assert "platforms 1 and 2 are exchanged" in told(spoilt, gait=gait)[1]
+    assert "platforms 1 and 2 are swapped" in told(spoilt, gait=gait)[1]
 
 
 def test_two_wrongs():

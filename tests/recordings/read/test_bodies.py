@@ -233,7 +233,7 @@ def test_bodies_that_are_stamped_apart_are_put_on_one_clock(tmp_path):
     path = bag(tmp_path, "mcap", late=0.004)
     read = read_file(path)
     assert read.doubts == (
-        "Not stamped together with the first body, and put on its times: 'front'.",
+        "Not time-stamped together with the first body, so put on its times: 'front'.",
     )
     here, there = (read.positions[1:-1, read.labels.index(one)] for one in ("rear", "front"))
     np.testing.assert_allclose(here, poses()["rear"][0][1:-1], atol=1e-9)
@@ -296,7 +296,7 @@ def test_an_experiment_learns_from_its_recordings_where_the_bodies_are(write, tm
     for run in experiment.runs:
         for channel, true in zip(("x", "y", "psi", "phi"), motion(N)[1:], strict=True):
             np.testing.assert_allclose(run.recording.values[channel], true, atol=2e-3)
-    learnt = [issue.message for issue in issues if "was learnt" in issue.message]
+    learnt = [issue.message for issue in issues if "was estimated" in issue.message]
     assert len(learnt) == 1
     assert "platform 1 carries rear," in learnt[0]
     assert experiment.uncertainty["psi_zero"].sigma > 0.05

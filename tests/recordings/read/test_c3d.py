@@ -70,7 +70,7 @@ def test_zeros_and_nan_are_missing(tmp_path, points):
     points[3, 0], points[4, 1] = 0.0, np.nan
     data = read_file(written(tmp_path / "a.c3d", points))
     assert np.argwhere(np.isnan(data.positions).all(axis=2)).tolist() == [[3, 0], [4, 1]]
-    assert data.doubts == ("1 positions are exactly 0, 0, 0, and were taken as missing.",)
+    assert data.doubts == ("1 positions are exactly 0, 0, 0 and were taken as missing.",)
 
 
 def test_points_that_are_angles_are_no_markers(tmp_path, points):
@@ -78,7 +78,7 @@ def test_points_that_are_angles_are_no_markers(tmp_path, points):
     data = read_file(written(tmp_path / "a.c3d", points, more=more))
     assert data.labels == ("A", "C", "*4")
     np.testing.assert_allclose(data.positions, points[:, [0, 2, 3]] / 1000, atol=1e-7)
-    assert data.doubts == ("1 points are not positions, and were not read.",)
+    assert data.doubts == ("1 points are not positions and were not read.",)
 
 
 def test_analog_samples_between_the_points(tmp_path, points):

@@ -79,7 +79,7 @@ def test_a_fourth_number_below_0_is_a_missing_marker(write):
 
 def test_places_that_software_made_up_are_told(write):
     data = read_file(write(file(fourth=[5, 0]), "a.c3d"))
-    assert any("1 positions have the residual 0" in doubt for doubt in data.doubts)
+    assert any("1 positions have residual 0" in doubt for doubt in data.doubts)
 
 
 def test_frames_that_do_not_begin_at_1(write):
@@ -92,13 +92,13 @@ def test_frames_that_do_not_begin_at_1(write):
     ("content", "message"),
     [
         (file()[:1040], "has 0 frames"),
-        (file()[:520], "damaged or not whole"),
-        (file()[:512], "names no kind of processor"),
+        (file()[:520], "damaged or incomplete"),
+        (file()[:512], "names no processor type"),
         (file(last=40_000), "states 1 markers in 40000 frames"),
         (file(first=5, last=3), "in -1 frames"),
         (file(scale=-np.inf), "its scale is"),
         (file(unit=b"K "), "Read the unit 'K'"),
-        (file(unit=b"mm")[:515] + b"\0" + file()[516:], "names no kind of processor"),
+        (file(unit=b"mm")[:515] + b"\0" + file()[516:], "names no processor type"),
     ],
 )
 def test_what_is_damaged_is_refused(write, content, message):

@@ -41,7 +41,7 @@ def test_a_column_that_is_called_as_the_channel_gives_way_to_the_one_that_is_nam
     text = "t,x,y,psi,theta,phi\n0,1,2,9,3,4\n0.01,1,2,9,3,4\n"
     run = read_file(write(text), ReadOptions(columns={"psi": Column("theta")}))
     assert run.values["psi"].tolist() == [3, 3]
-    assert run.doubts == ("Columns that were not read: 'psi, as named'.",)
+    assert run.doubts == ("Columns not read: 'psi, as named'.",)
     # A file that has its own name for it is read too.
     assert read_file(write(plain(motion())), ReadOptions(columns=COLUMNS)).values["psi"].any()
 

@@ -118,7 +118,7 @@ def test_netcdf_and_a_servo_log(write, tmp_path):
     write(f"{HEAD}recordings:\n- {{file: one.nc, {GAIT}, servo_log: log.csv}}\n", "experiment.yaml")
     (made,) = read_experiment(tmp_path).runs
     np.testing.assert_array_equal(made.recording.values["x"], run.values["x"])
-    assert "share no motion" in " ".join(made.recording.doubts)
+    assert "have no motion in common" in " ".join(made.recording.doubts)
 
 
 @pytest.mark.parametrize(("amplitude", "warned"), [(0.5, False), (0.6, True)])
@@ -218,7 +218,7 @@ def test_lint_reads_the_recordings_too(write, tmp_path):
     )
     done = lint(tmp_path)
     assert done.exit_code == 2
-    assert "No recording to fit is left" in done.stdout
+    assert "No recording is left to fit" in done.stdout
     short = [line.split(": ")[2] for line in done.stdout.splitlines() if "too short" in line]
     assert short == ["one.csv", "two.csv"]
     write("t,x,y,psi,phi\n0,1,2,3,4\n1,a,2,3,4\n", "two.csv")

@@ -62,7 +62,7 @@ def test_motive(write):
     np.testing.assert_allclose(data.positions[0], [[1, 0.1, 2], [1.5, 0.1, 2.5]])
     assert np.isnan(data.positions[1, 1]).all()
     assert data.rate == pytest.approx(120, rel=1e-3)
-    assert data.doubts[0] == "Columns that were not read: 'Rigid Body, Rigid Body Marker'."
+    assert data.doubts[0] == "Columns not read: 'Rigid Body, Rigid Body Marker'."
 
 
 def test_motive_with_a_time_code_and_titles(write):

@@ -116,7 +116,7 @@ def test_a_file_of_another_program_will_do(tmp_path):
     run = read_file(tmp_path / "run.nc", ReadOptions(Noise(1e-3, 3e-3)))
     assert run.values["phi"].tolist() == [0.5, 1.5, 2.5, 3.5]
     assert run.sigma["phi"].tolist() == [3e-3] * n
-    assert run.doubts == ("Variables that were not read: v.",)
+    assert run.doubts == ("Variables not read: v.",)
     assert run.source["written by"] == "rr-opt 1.0"
 
 

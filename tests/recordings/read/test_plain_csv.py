@@ -38,7 +38,7 @@ def test_any_order_of_columns_and_others_are_told(write):
     assert [run.values[name].tolist() for name in ("x", "y", "psi", "phi", "torque")] == [
         [1.0, 1.1], [2.0, 2.1], [3.0, 3.1], [4.0, 4.1], [0.5, 0.6],
     ]  # fmt: skip
-    assert run.doubts == ("Columns that were not read: 'note'.",)
+    assert run.doubts == ("Columns not read: 'note'.",)
 
 
 def test_sigma_is_the_noise_stated_and_else_unknown(write):
@@ -117,11 +117,11 @@ def test_a_row_that_lacks_its_last_cells_is_told(write):
     run = read_file(write(ROWS.replace(",+0.26,0.6", "")))
     assert run.flags["psi"].tolist() == [0, Flag.MISSING, 0]
     assert run.doubts == (
-        "Line 3 has fewer cells than the header. The others were taken as empty.",
+        "Line 3 has fewer cells than the header. The missing cells were taken as empty.",
     )
 
 
 def test_a_file_that_ends_within_a_row_loses_that_row_and_says_so(write):
     run = read_file(write(ROWS.removesuffix(",0.27,0.7\n")))
     assert run.t.tolist() == [0.0, 0.01]
-    assert run.doubts == ("The file ends within line 4, which was left out.",)
+    assert run.doubts == ("The file ends in the middle of line 4, which was dropped.",)

@@ -23,8 +23,8 @@ CASES = {
     "no times": ("t,x,y,psi,phi\n,1,2,3,4\n,1,2,3,4\n", 1, "Read no row with a time."),
     "one time": ("t,x,y,psi,phi\n1,1,2,3,4\n1,1,2,3,4\n", 1, "Read 1 row with a time."),
     "another table": ("name,age\nA,3\n", 1, "Expected a header row such as `t,x,y,psi,phi`"),
-    "a table of OpenSim": ("inDegrees=no\nendheader\n", 1, "OpenSim"),
-    "bytes 0": (b"t,x,y,psi,phi\n0,1,\x002,3,4\n", 2, "Read a byte 0"),
+    "an OpenSim table": ("inDegrees=no\nendheader\n", 1, "OpenSim"),
+    "bytes 0": (b"t,x,y,psi,phi\n0,1,\x002,3,4\n", 2, "Read a zero byte"),
     "half of UTF-16": ("t,x\n".encode("utf-16") + b"\x00", 2, "not UTF-16"),
 }
 

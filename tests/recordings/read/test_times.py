@@ -37,7 +37,7 @@ def test_rows_out_of_order_are_sorted_and_flagged(write):
     assert run.t.tolist() == sorted(times)
     assert run.values["x"].tolist() == [0, 1, 3, 4, 2, 5]
     assert run.flags["x"].tolist() == [0, 0, 0, 0, Flag.OUT_OF_ORDER, 0]
-    assert run.doubts == ("Out of order, and sorted by time: line 4.",)
+    assert run.doubts == ("Out of order, now sorted by time: line 4.",)
 
 
 def test_a_clock_that_jumps_once_does_not_spoil_what_follows(write):
@@ -54,7 +54,7 @@ def test_a_row_that_is_there_twice_is_left_out(write):
     run = read_file(write(text.replace(line, f"{line}\n{line}")))
     assert run.values["x"].tolist() == [0, 1, 2, 3, 4]
     assert not run.flags["x"].any()
-    assert run.doubts == ("Left out, with the time of another row: line 5.",)
+    assert run.doubts == ("Dropped, same time as another row: line 5.",)
 
 
 def test_two_rows_of_one_time_that_disagree_are_no_data(write):
@@ -67,12 +67,12 @@ def test_two_rows_of_one_time_that_disagree_are_no_data(write):
 def test_a_row_without_a_time_is_left_out_and_told(write):
     run = read_file(write(csv(np.arange(5) / 100).replace("0.0200", "")))
     assert run.values["x"].tolist() == [0, 1, 3, 4]
-    assert "Left out, without a time: line 4." in run.doubts
+    assert "Dropped, no time: line 4." in run.doubts
 
 
 def test_an_uneven_rate_is_told(write):
     times = np.cumsum(np.random.default_rng(5).uniform(0.0075, 0.0125, 200))
-    assert any("constant rate" in doubt for doubt in read_file(write(csv(times))).doubts)
+    assert any("interval is not constant" in doubt for doubt in read_file(write(csv(times))).doubts)
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-320, 1e-10])
@@ -101,7 +101,7 @@ def test_times_that_jitter_keep_their_rate_and_lack_no_row(write):
     t = np.arange(2000) / 100 + np.random.default_rng(0).uniform(-0.003, 0.003, 2000)
     run = read_file(write(csv(np.sort(t))))
     assert float(run.source["rate"].split()[0]) == pytest.approx(100, rel=1e-3)
-    assert any("constant rate" in doubt for doubt in run.doubts)
+    assert any("interval is not constant" in doubt for doubt in run.doubts)
     assert not any("missing" in doubt for doubt in run.doubts)
 
 

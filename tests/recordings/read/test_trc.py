@@ -56,7 +56,7 @@ def test_what_the_header_says_wrongly_is_told(write):
     data = read_file(write(text))
     assert data.rate == pytest.approx(50.0)
     assert data.doubts == (
-        "The header states 3 markers, but names 2.",
+        "The header states 3 markers but names 2.",
         "The header states 4 frames; the file has 3.",
         "The header states 60 Hz, but the times come at 50 Hz. The times were used.",
     )
@@ -74,7 +74,7 @@ REFUSED = {
     "a word": (TEXT.replace("1001", "here"), 8, "Read 'here' in column 3 (X of front)"),
     "a unit": (TEXT.replace("mm", "volts"), 3, "Read the unit 'volts'"),
     "no rows": (TEXT.split("1\t0.00", maxsplit=1)[0], 5, "no rows"),
-    "no frame": (TEXT.replace("\n2\t", "\n\t"), 8, "as the number of a frame"),
+    "no frame": (TEXT.replace("\n2\t", "\n\t"), 8, "as a frame number"),
     "no time": (
         TEXT.replace("0.00\t1000", "\t1000").replace("0.02\t", "\t").replace("0.04\t", "\t"),
         7,

@@ -89,7 +89,7 @@ def test_the_same_in_other_dress(write, text):
 
 def test_other_sections_are_told(write):
     doubts = read_file(write(DEVICES + SECTION + MODEL)).doubts
-    assert "Sections that were not read: devices, model outputs." in doubts
+    assert "Sections not read: devices, model outputs." in doubts
 
 
 def test_velocities_beside_the_places_are_not_taken_for_them(write):
@@ -105,7 +105,7 @@ Frame,Sub Frame,X,Y,Z,X',Y',Z',X,Y,Z,X',Y',Z'
     data = read_file(write(text))
     assert data.labels == ("A", "B")
     np.testing.assert_allclose(data.positions[0] * 1000, [[1, 2, 3], [4, 5, 6]])
-    assert data.doubts == ("Columns that were not read: \"x', y', z'\".",)
+    assert data.doubts == ("Columns not read: \"x', y', z'\".",)
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def test_frames_that_are_missing_there_twice_or_out_of_place(write):
     np.testing.assert_allclose(data.positions[1:5, 0, 0] * 1000, seen)
     assert np.isnan(data.positions[5]).all()
     told = " ".join(data.doubts)
-    for words in ("Out of order", "time of another row", "different values", "jumps twice"):
+    for words in ("Out of order", "time as another row", "different values", "jumps twice"):
         assert words.replace("twice", "2 times") in told
 
 
@@ -163,8 +163,8 @@ REFUSED = {
     "no heights": (SECTION.replace("X,Y,Z", "X,Y,W"), 4, "no columns `X,Y,Z`"),
     "no frames": (SECTION.replace("Frame,Sub Frame", "No,"), 4, "Expected the row `Frame,Sub"),
     "a word": (SECTION.replace("2001,71", "lost,71"), 7, "Read 'lost' in column 7 (y of RR:right)"),
-    "half a frame": (SECTION.replace("12,0", "12.5,0"), 7, "Read 12.5 as the number of a frame"),
-    "no frame": (SECTION.replace("12,0", ",0"), 7, "as the number of a frame"),
+    "half a frame": (SECTION.replace("12,0", "12.5,0"), 7, "Read 12.5 as a frame number"),
+    "no frame": (SECTION.replace("12,0", ",0"), 7, "as a frame number"),
     "another unit": (SECTION.replace("mm", "deg"), 5, "Read the unit 'deg'"),
     "two units": (SECTION.replace("mm", "m", 1), 5, "Read the units 'm, mm'"),
     "no rows": (SECTION.split("11,0", maxsplit=1)[0] + "\n", 5, "has no rows"),

@@ -100,20 +100,20 @@ def test_the_record_has_it(missing, consistent, unexplained):
         1 - reported["speed_reached"] / reported["speed_as_found"]
     )
     assert consistent.record()["loss"] is None
-    assert "no name" in unexplained.record()["loss"]["not_told"]
+    assert "unidentified physics" in unexplained.record()["loss"]["not_told"]
 
 
 def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
     gait = SineGait(1.0, 1.5)
     turned = Loss(gait, promised=0.3, reached=-0.4, best=gait, speed=0.25, unseen=False)
     assert turned.share == pytest.approx(2.6)
-    assert share_lost(turned) == "more than all"
-    assert "more than all, as it drives the robot the other way." in loss_sentences(turned)
+    assert share_lost(turned) == "over 100 %"
+    assert "over 100 %, as it drives the robot in the opposite direction." in loss_sentences(turned)
     less = replace(turned, reached=0.2)
     assert share_lost(less) == "20 %"
-    assert "Speed lost through the wrong model: 20 %." in loss_sentences(less)
+    assert "Speed lost to the wrong model: 20 %." in loss_sentences(less)
     faster = replace(turned, reached=0.26)
-    assert "none, as it takes the corrected robot beyond its limits." in loss_sentences(faster)
+    assert "none, as it exceeds the corrected robot's limits." in loss_sentences(faster)
 
 
 def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
@@ -126,4 +126,4 @@ def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
     monkeypatch.setattr(module, "check_optimum", lambda *_: beaten)
     reported = loss_of(missing.experiment, missing.experiment.robot)
     assert isinstance(reported, LossUnknown)
-    assert "a plain sweep finds a faster gait" in reported.sentence
+    assert "a grid sweep finds a faster gait" in reported.sentence

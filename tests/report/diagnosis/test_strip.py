@@ -22,7 +22,7 @@ def test_what_the_diagnosis_says_of_the_place_is_under_the_strip_whether_or_not_
     dark = tuple(replace(stage, guilty=False) for stage in found.stages)
     lit = chain_note(replace(missing, found=found))
     unlit = chain_note(replace(missing, found=replace(found, stages=dark, verdict="consistent")))
-    assert f"{where} Lit: " in lit
+    assert f"{where} Highlighted: " in lit
     assert where in unlit
-    assert "Lit:" not in unlit
+    assert "Highlighted:" not in unlit
     assert ".." not in lit

@@ -108,9 +108,9 @@ def test_another_amplitude_is_told_and_not_refused(tmp_path):
 @pytest.mark.parametrize(
     ("stated", "key", "said"),
     [
-        ("position: 1", "noise.position", "Smaller effects will not be found."),
+        ("position: 1", "noise.position", "Smaller effects will go undetected."),
         ("position: 1.0e-6", "noise.position", "counts as a mismatch."),
-        ("angle: 0.05", "noise.angle", "Smaller effects will not be found."),
+        ("angle: 0.05", "noise.angle", "Smaller effects will go undetected."),
     ],
 )
 def test_noise_that_is_not_what_the_recordings_have(tmp_path, stated, key, said):

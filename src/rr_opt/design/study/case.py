@@ -45,7 +45,7 @@ def solve_case(task: Task) -> Row:
         row = Row(Status.NOT_CONVERGED, str(error))
     except Exception as error:  # one failing case must not end a study of a thousand
         what = f"{type(error).__name__}: {error}"
-        row = Row(Status.NOT_CONVERGED, f"The case ended in an error that is a defect: {what}.")
+        row = Row(Status.NOT_CONVERGED, f"The case failed with an internal error: {what}.")
     return replace(row, seconds=time.process_time() - begun)
 
 
@@ -327,9 +327,9 @@ def measured(problem: Problem, best: StartResult, robot: Robot, ratio: float) ->
     error = abs(steady.speed / best.speed - 1)
     if not error <= _CLAIM:
         message = (
-            f"The optimiser claims {best.speed:.6g} m/s and the steady cycle has "
-            f"{steady.speed:.6g} m/s, {error:.1e} from it (at most {_CLAIM:.0e} allowed). "
-            "Solve the case alone with `rr-opt maximize-speed`."
+            f"The optimiser claims {best.speed:.6g} m/s but the steady cycle has "
+            f"{steady.speed:.6g} m/s, a relative error of {error:.1e} (at most {_CLAIM:.0e} "
+            "allowed). Solve the case alone with `rr-opt maximize-speed`."
         )
         return Row(Status.NOT_CONVERGED, message)
     extremes = reached(robot, steady)
@@ -338,7 +338,7 @@ def measured(problem: Problem, best: StartResult, robot: Robot, ratio: float) ->
         unit, limit = UNITS[name], getattr(problem.limits, name)
         message = (
             f"The optimiser's gait reaches {extremes[name]:.6g} {unit}. Expected it to keep the "
-            f"limit on {name}, {limit:.6g} {unit}, which it breaks by {excess:.1e} of it (at most "
+            f"limit on {name}, {limit:.6g} {unit}, which it exceeds by {excess:.1e} of it (at most "
             f"{LARGEST_EXCESS:.0e} allowed). Solve the case alone with `rr-opt maximize-speed`."
         )
         return Row(Status.NOT_CONVERGED, message)

@@ -137,7 +137,7 @@ def _steady(system: System, path: DrivePath, p: Array, psi: float, size: int) ->
         before = v, gap
         start[V:] = states[V:, -1]
         start[V] = v + (math.copysign(_FIRST, gap) if math.isnan(slope) else -gap / slope)
-    raise NotConvergedError("Driven with all its effects the robot's speed does not repeat.")
+    raise NotConvergedError("With all its effects, the robot does not settle to a periodic speed.")
 
 
 @dataclass(frozen=True)

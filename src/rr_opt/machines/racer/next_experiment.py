@@ -56,11 +56,11 @@ def next_experiment(
         apart = _separations(planned, fit)
         k = int(np.argmax(apart))
         if apart[k] > _TOLD_APART:
-            gait = plans[k].gait
+            gait, both = plans[k].gait, words_of(f"{_names(best)} and {name}")
             sentence = (
-                f"Record {plans[k].seconds:.0f} s of amplitude {gait.amplitude:.2f} rad, period "
-                f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, from {plans[k].start}: after "
-                f"refitting, {_names(best)} and {name} differ in it by {apart[k]:.1f} sigma."
+                f"Record {plans[k].seconds:.0f} s at amplitude {gait.amplitude:.2f} rad, period "
+                f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, start: {plans[k].start}. Even "
+                f"after refitting, {both} would differ by {apart[k]:.1f} sigma."
             )
             return _answer(plans[k], (_names(best), name), float(apart[k]), sentence)
     known = _narrowed(planned, best, begun)
@@ -70,9 +70,9 @@ def next_experiment(
     gait = plans[k].gait
     words = " of ".join(reversed(words_of(quantity).split(".")))
     sentence = (
-        f"Record {plans[k].seconds:.0f} s of amplitude {gait.amplitude:.2f} rad, period "
-        f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, from {plans[k].start}: it would make "
-        f"the interval of {words}, the least certain value, {factor:.1f} times narrower."
+        f"Record {plans[k].seconds:.0f} s at amplitude {gait.amplitude:.2f} rad, period "
+        f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, start: {plans[k].start}. This would "
+        f"narrow the interval of {words}, the least certain value, by a factor of {factor:.1f}."
     )
     return _answer(plans[k], (_names(best), quantity), apart, sentence)
 

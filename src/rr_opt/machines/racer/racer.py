@@ -23,10 +23,10 @@ class RollerRacer(RacerModel):
     inputs: Mapping[str, str] = MappingProxyType(
         {
             "rolling": "a force along the wheels",
-            "yaw": "a moment that turns the robot",
-            "constraint_axle1": "a side speed of axle 1",
-            "constraint_axle2": "a side speed of axle 2",
-            "actuation": "an error of the joint's angle",
+            "yaw": "a yaw moment",
+            "constraint_axle1": "a sideways speed of axle 1",
+            "constraint_axle2": "a sideways speed of axle 2",
+            "actuation": "an error in the joint angle",
         }
     )
 
@@ -74,13 +74,13 @@ class RollerRacer(RacerModel):
     def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
         """Errors of the simulated place."""
         return (
-            f"the simulated place was {_off(before)} off (RMS beyond the noise) and is "
-            f"{_off(after)} off now; "
+            f"the simulated position was {_off(before)} off (RMS beyond the noise) and is now "
+            f"{_off(after)} off; "
         )
 
     def accuracy(self, misfits: Sequence[Misfit]) -> str:
         """The same, of the corrected simulation."""
-        return f"The corrected simulation is {_off(misfits)} off the place (RMS beyond the noise)."
+        return f"The corrected position is {_off(misfits)} off (RMS beyond the noise)."
 
 
 def _off(misfits: Sequence[Misfit]) -> str:

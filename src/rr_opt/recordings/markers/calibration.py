@@ -272,7 +272,7 @@ def _shape(seen: Array) -> tuple[Complex, tuple[Complex, Complex]]:
         own = (z - origin[:, None]) * np.conj(turn)[:, None]
         if not np.isfinite(own).any(axis=0).all():
             raise InputError(
-                "The markers of a platform stand in one point. Expected them apart, to show its "
+                "All markers of a platform are at one point. Expected them apart, to show its "
                 "heading. Check the file, or give the layout with --layout."
             )
         new = np.nanmedian(own.real, axis=0) + 1j * np.nanmedian(own.imag, axis=0)
@@ -317,8 +317,8 @@ def _joint(poses: Sequence[tuple[Complex, Complex]]) -> tuple[tuple[complex, com
     weak = np.linalg.matrix_rank(A, tol=1e-6 * np.sqrt(len(A) + 1)) < 2
     if weak or sigma > _VAGUE:
         raise InputError(
-            "The servo moves too little to show the joint P, the point that both platforms keep. "
-            "Expected a motion of some degrees. Record one, or give the layout with --layout."
+            "The servo moves too little to locate the joint P, the point common to both platforms. "
+            "Expected a motion of a few degrees. Record one, or give the layout with --layout."
         )
     return (complex(found[0]), complex(found[1])), sigma
 

@@ -140,8 +140,8 @@ _SCALED = 500
 _AS_SAID = 1.5
 """Typical ratio of distances to the layout's from which it is another layout."""
 _UNITS = (
-    (1000.0, "It looks like millimetres, of which the file or the layout says metres."),
-    (0.001, "It looks like metres, of which the file or the layout says millimetres."),
+    (1000.0, "These look like millimetres where the file or the layout says metres."),
+    (0.001, "These look like metres where the file or the layout says millimetres."),
 )
 
 
@@ -160,8 +160,8 @@ def check_scale(bodies: Bodies, seen: Array, up: str) -> None:
     ratio = float(np.median(ratios))
     guess = next((words for size, words in _UNITS if abs(ratio / size - 1) < 0.2), "")
     raise InputError(
-        f"Read markers that are, seen along {up}, {ratio:.3g} times as far apart as the layout has "
-        "them on the same platform. Expected about the same. "
+        f"Read markers that, viewed along {up}, are {ratio:.3g} times as far apart as in the "
+        "layout of the same platform. Expected about the same. "
         + (guess or "Check the layout's places, its `up`, and the file's unit.")
     )
 

@@ -193,22 +193,22 @@ def _details(given: ExaminedRecording, fit: ClockFit) -> Iterator[Notice]:
 
 def _scale(scale: float) -> str:
     if scale < 1:
-        return "a lag or backlash makes it less; a clock would not."
-    return "play with inertia makes it more; a clock would not."
+        return "a lag or backlash reduces it; a clock offset would not."
+    return "play with inertia increases it; a clock offset would not."
 
 
 def _late(given: ExaminedRecording, fit: ClockFit) -> str:
     if fit.offset > 0:
-        return "a clock that is off, as no servo moves before its command"
+        return "a clock offset, as no servo moves before its command"
     if given.clock_known:
-        return "a servo that is late, as its log gives the offset of the clocks"
-    both = "a servo that is late, or a clock that is off."
+        return "servo delay, as its log gives the clock offset"
+    both = "servo delay or a clock offset."
     if given.start == "rest":
         return (
-            f"{both} The start from rest is part of the fit, but only a model of the servo can "
+            f"{both} The start from rest is part of the fit, but only a servo model can "
             "distinguish the two"
         )
-    return f"{both} This recording cannot distinguish the two: they have the same effect"
+    return f"{both} This recording cannot distinguish the two: their effect is the same"
 
 
 def follows(given: ExaminedRecording, phi: Array) -> bool:

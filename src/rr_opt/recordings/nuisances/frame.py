@@ -14,7 +14,7 @@ from rr_opt.recordings.nuisances.evidence import ROLLING, ExaminedRecording, Mot
 from rr_opt.recordings.warnings import Notice, notice
 
 _UNDONE: Mapping[str, Callable[[Array, Array, Array, Array], Motion]] = {
-    "x and y are exchanged": lambda x, y, psi, phi: (y, x, psi, phi),
+    "x and y are swapped": lambda x, y, psi, phi: (y, x, psi, phi),
     "x is mirrored": lambda x, y, psi, phi: (-x, y, psi, phi),
     "y is mirrored": lambda x, y, psi, phi: (x, -y, psi, phi),
     "psi is off by 180 deg": lambda x, y, psi, phi: (x, y, psi + np.pi, phi),
@@ -23,7 +23,7 @@ _UNDONE: Mapping[str, Callable[[Array, Array, Array, Array], Motion]] = {
     "psi has the other sign": lambda x, y, psi, phi: (x, y, -psi, phi),
     "phi has the other sign": lambda x, y, psi, phi: (x, y, psi, -phi),
     "phi is off by 180 deg": lambda x, y, psi, phi: (x, y, psi, phi + np.pi),
-    "platforms 1 and 2 are exchanged": lambda x, y, psi, phi: (x, y, psi + phi + np.pi, -phi),
+    "platforms 1 and 2 are swapped": lambda x, y, psi, phi: (x, y, psi + phi + np.pi, -phi),
 }
 """What may be wrong, and the true motion in that case.
 

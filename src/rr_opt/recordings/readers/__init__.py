@@ -48,7 +48,7 @@ def read_file(
     file, options = str(path), options or ReadOptions()
     content = read_content(Path(path), LONG)
     if not content.strip():
-        refuse(file, "The file is empty. Expected a recording. Export it once more.")
+        refuse(file, "The file is empty. Expected a recording. Export it again.")
     for reader in READERS:
         if reader.binary and reader.sniff(content):
             return reader.read(file, content, options)
@@ -68,7 +68,7 @@ def _refuse(text: Text) -> NoReturn:
     first = shown(text.lines[header.at]) if header and len(names) > 1 else "a line without columns"
     advice = "Check that it is a recording."
     if "endheader" in "\n".join(text.lines[:20]).casefold():
-        advice = "It looks like a table of OpenSim: export C3D or TRC instead."
+        advice = "It looks like an OpenSim table: export C3D or TRC instead."
     elif names and all(name.replace(".", "").lstrip("+-").isdecimal() for name in names):
         advice = "The first row has numbers: write the header row `t,x,y,psi,phi` above it."
     formats = ", ".join(reader.format for reader in READERS[:-2])

@@ -60,7 +60,7 @@ class Bytes:
     def text(self, start: int, length: int) -> str:
         """A text without the blanks about it. Raises ValueError if the content ends before."""
         if start + length > len(self.content):
-            raise ValueError("a text beyond its end")
+            raise ValueError("a text that runs past its end")
         return self.content[start : start + length].decode("latin-1").strip(" \0")
 
 
@@ -130,7 +130,7 @@ def read_header(content: bytes) -> tuple[Bytes, C3dHeader]:
     """Raises ValueError."""
     at = _BLOCK * (content[0] - 1) + 3
     if at >= len(content) or content[at] not in (INTEL, DEC, MIPS):
-        raise ValueError("it names no kind of processor")
+        raise ValueError("it names no processor type")
     file = Bytes(content, content[at])
     scale, rate = (float(file.numbers("f4", 1, place)[0]) for place in (12, 20))
     (start,) = file.integers("u2", 1, 16)
@@ -158,7 +158,7 @@ def frame_count(
         refuse(
             file,
             f"The file states {header.points} markers in {stated} frames, and has {max(there, 0)} "
-            "frames. It is damaged or not whole: export it once more.",
+            "frames. It is damaged or incomplete: export it again.",
         )
     if last == _LAST_COUNT and room >= stated * header.frame_bytes + _BLOCK:
         # The last block is filled up with zeros, which are no frames.
@@ -205,7 +205,7 @@ def read(file: str, content: bytes, _: ReadOptions) -> MarkerData:
         whole, header = read_header(content)
         parameters = read_parameters(whole, _BLOCK * (content[0] - 1))
     except ValueError as error:
-        refuse(file, f"The C3D file is damaged or not whole: {error}. Export it once more.")
+        refuse(file, f"The C3D file is damaged or incomplete: {error}. Export it again.")
     count, doubts = frame_count(content, header, parameters, file)
     labels = _labels(parameters, header.points)
     others = {one for key in _NOT_MARKERS for one in parameters.get(f"POINT:{key}", ())}

@@ -90,7 +90,7 @@ def frames_of(table: NumberTable, column: int, file: str, header: int) -> NDArra
     wrong = np.flatnonzero(~(np.abs(frames) < 2**53) | (frames != np.round(frames)))
     if len(wrong):
         read = "nothing" if np.isnan(frames[wrong[0]]) else f"{frames[wrong[0]]:g}"
-        message = f"Read {read} as the number of a frame. Expected a whole number. Correct it."
+        message = f"Read {read} as a frame number. Expected a whole number. Correct it."
         refuse(file, message, int(table.lines[wrong[0]]))
     return frames.astype(np.int64)
 
@@ -147,7 +147,7 @@ def marker_data(
     order = in_order(times, positions, lines)
     if not len(order.rows):
         first = int(lines[0]) if len(lines) else None
-        refuse(file, "Read no row with a time. Expected one in each. Export it once more.", first)
+        refuse(file, "Read no row with a time. Expected one in each. Export it again.", first)
     times, frame = times[order.rows], frame[order.rows]
     positions = positions[order.rows] * scale
     origin = (positions == 0).all(axis=2)

@@ -44,8 +44,8 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     if last is None or len(header[last]) < 2 or not header[last][1].startswith("Time"):
         refuse(
             file,
-            "Read no row `Frame,Time (Seconds),X,Y,Z,...`. Expected it below the header. "
-            "Export it once more.",
+            "Read no row `Frame,Time (Seconds),X,Y,Z,...`. Expected it below the header. Export it "
+            "again.",
             min(len(header), _HEADER),
         )
     axes = header[last]

@@ -86,7 +86,7 @@ def to_dataset(recording: Recording, gait: Gait | None = None) -> xarray.Dataset
         meaning = {"long_name": _MEANINGS[name], "ancillary_variables": f"{name}_sigma {name}_flag"}
         sigma = {"long_name": f"standard deviation of the noise of {name}"}
         flag = {
-            "long_name": f"why a value of {name} is not data; 0: it is",
+            "long_name": f"why a value of {name} is not valid data; 0: it is valid",
             "flag_masks": np.array([flag.value for flag in Flag], np.uint8),
             "flag_meanings": " ".join(str(flag.name).lower() for flag in Flag),
         }
@@ -121,8 +121,8 @@ def from_dataset(data: xarray.Dataset, file: str, noise: Noise | None = None) ->
     t = numbers_of(data, "t", "s", file)
     if len(t) < 2 or not (np.diff(t) > 0).all():
         raise InputError(
-            f"{file}: t has {len(t)} values. Expected at least 2, each above the last. "
-            "Sort them, and delete what is there twice."
+            f"{file}: t has {len(t)} values. Expected at least 2, each above the last. Sort them, "
+            "and delete duplicates."
         )
     channels = [*CHANNELS, *(["torque"] if "torque" in data else [])]
     values, sigma, flags = {}, {}, {}
@@ -134,8 +134,8 @@ def from_dataset(data: xarray.Dataset, file: str, noise: Noise | None = None) ->
             if ((sigma[name] < 0) | (sigma[name] > _NO_NOISE)).any():
                 raise InputError(
                     f"{file}: {name}_sigma ranges from {np.nanmin(sigma[name]):.3g} to "
-                    f"{np.nanmax(sigma[name]):.3g}. Expected standard deviations of noise. "
-                    "Write the file once more."
+                    f"{np.nanmax(sigma[name]):.3g}. Expected standard deviations of noise. Write "
+                    "the file again."
                 )
         else:
             sigma[name] = np.full(len(t), noise.of(name) if noise else np.nan)
@@ -246,7 +246,7 @@ def _opened(path: Path) -> Any:
         raise
     except Exception as error:
         # Any error that a damaged file causes in the library.
-        refuse(str(path), f"The netCDF file cannot be read: {error}. Write it once more.")
+        refuse(str(path), f"The netCDF file cannot be read: {error}. Write it again.")
 
 
 READER = Reader("netCDF", sniff, read, binary=True)

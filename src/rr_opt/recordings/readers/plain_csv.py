@@ -62,7 +62,7 @@ def read_columns(
     header = find_header(text)
     if header is None:
         expected = f"`{','.join(needed)}`"
-        refuse(text.file, f"The file has no rows. Expected {expected}. Export it once more.")
+        refuse(text.file, f"The file has no rows. Expected {expected}. Export it again.")
     header, units = _renamed(header, columns, known)
     _check(header, needed, known, columns, text.file)
     table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)

@@ -93,7 +93,7 @@ def _messages(path: Path) -> tuple[dict[str, list[Any]], dict[str, list[Any]]]:
         refuse(
             str(path),
             f"The bag cannot be read: {why}. Expected a ROS 1 bag, or a file of a ROS 2 bag beside "
-            "its metadata.yaml. Name that file, or record once more.",
+            "its metadata.yaml. Name that file, or record it again.",
         )
     return poses, joints
 

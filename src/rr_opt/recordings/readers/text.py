@@ -89,8 +89,8 @@ def decode(content: bytes, file: str) -> Text:
         line = text.count("\n", 0, text.index("\0")) + 1
         refuse(
             file,
-            "Read a byte 0, which no text has. Expected CSV, C3D, TRC or netCDF. The file may be "
-            "damaged, or of another format: export it once more.",
+            "Read a zero byte, which no text contains. Expected CSV, C3D, TRC or netCDF. The file "
+            "may be damaged, or in another format: export it again.",
             line,
         )
     if "\r" in text:

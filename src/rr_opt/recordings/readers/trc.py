@@ -35,8 +35,8 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     if len(text.lines) < 6:
         refuse(
             text.file,
-            "The file ends within its header. Expected five lines of header and then rows. "
-            "Export it once more.",
+            "The file ends within its header. Expected five header lines and then rows. Export it "
+            "again.",
             len(text.lines),
         )
     stated = _stated(text)
@@ -46,7 +46,7 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
         refuse(
             text.file,
             f"Read {shown(text.lines[3])}. Expected `Frame#`, `Time` and the markers' names. "
-            "Export it once more.",
+            "Export it again.",
             4,
         )
     names, doubts = _names(text, head, stated, separator)

@@ -58,7 +58,7 @@ def read_head(text: Text, start: int) -> Head:
         refuse(
             text.file,
             "The file ends within the header of the section. Expected its rate, the names, the "
-            "columns, the units and the rows. Export it once more.",
+            "columns, the units and the rows. Export it again.",
             len(text.lines),
         )
     rate_line, name_line, role_line, unit_line = text.lines[start + 1 : start + 5]
@@ -67,8 +67,8 @@ def read_head(text: Text, start: int) -> Head:
     if "frame" not in roles:
         refuse(
             text.file,
-            f"Read {shown(role_line)}. Expected the row `Frame,Sub Frame,X,Y,Z,...`. "
-            "Export it once more.",
+            f"Read {shown(role_line)}. Expected the row `Frame,Sub Frame,X,Y,Z,...`. Export it "
+            "again.",
             start + 4,
         )
     while roles and not roles[-1]:

@@ -65,8 +65,8 @@ def bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     axes[0].plot([], [], color=style.GREY, ls=style.DASHED, lw=1, label="the noise")
     style.legend_below(made, axes[0])
     return made, (
-        "Bands contain 95 % of each channel's residuals within a second and are dark where they "
-        "overlap. Where blue just fills the space between the dashed lines, only noise is left. An "
+        "Bands contain 95 % of each channel's residuals in each second and are dark where they "
+        "overlap. Where blue just fills the space between the dashed lines, only noise remains. An "
         f"axis that exceeds {_WIDE:g} σ is logarithmic beyond {_LINEAR:g} σ."
     )
 
@@ -142,7 +142,7 @@ def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     names = dict.fromkeys(stage.name.replace("_", " ") for stage, _ in curves)
     return made, (
         f"The unknown input ({' and '.join(names)}) that would explain most of the misfit of the "
-        "nominal model, with a 95 % band. Zero means that none is needed."
+        "nominal model, with a 95 % band. Zero means none is needed."
     )
 
 
@@ -159,8 +159,8 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
 _NAMES = {
     "phase": "phase of the cycle",
     "rate": "commanded rate",
-    "along": "place along x",
-    "across": "place along y",
+    "along": "position along x",
+    "across": "position along y",
     "time": "time since the start",
 }
 

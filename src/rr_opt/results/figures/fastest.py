@@ -54,10 +54,10 @@ def certainty(ax: Axes, robust: Robust) -> None:
     ):
         ax.plot(robust.scales, 1e3 * np.abs(curve), color=colour, label=label)
     ax.plot(1.0, 1e3 * abs(robust.speed), "o", color=style.FORWARD, zorder=4)
-    ax.set(xlabel="spreads, in those of the file", ylabel="95 % reach, mm/s")
+    ax.set(xlabel="spreads, relative to those in the file", ylabel="95 % reach, mm/s")
     ax.set(xlim=(robust.scales[0], robust.scales[-1]))
     ax.set_ylim(bottom=0)
-    style.note(ax, f"nominal gait: {100 * robust.kept:.0f} % keep the limit on torque")
+    style.note(ax, f"nominal gait: {100 * robust.kept:.0f} % keep the torque limit")
     ax.legend(loc="upper right")
 
 
@@ -114,7 +114,7 @@ def _use(row: LimitRow) -> str:
     unit, factor = QUANTITIES[row.name].common
     if row.name in LEAST:
         least, value = number(row.limit * factor, 3), number(row.value * factor, 3)
-        return f"not active: {value} {unit} kept, {least} asked"
+        return f"not active: {value} {unit}, {least} required"
     return f"not active: {100 * row.value / row.limit:.0f} % used"
 
 
