@@ -225,14 +225,15 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     """
     names = (words_of(one.name) for one in found.findings)
     listed = " and ".join(names)
+    wrong = f"values of {listed} are" if len(found.findings) > 1 else f"value of {listed} is"
     sure = ", ".join(f"{100 * one.confidence:.0f} %" for one in found.findings)
     differs = found.before**2 - 1 > SETTINGS.none**2
     refitted = " once its values are refitted within their uncertainties" if differs else ""
     opening = {
         "consistent": f"The nominal model explains the recordings{refitted}.",
-        "parameters": f"The model is right, but the value of {listed} is not.",
+        "parameters": f"The model is right, but the {wrong} not.",
         "missing_physics": f"The model leaves out {listed} (confidence {sure}).",
-        "unexplained": ("Physics is missing; no effect in the catalogue is shown to be the cause."),
+        "unexplained": "Physics is missing; no effect in the catalogue is shown to be the cause.",
     }[found.verdict]
     held = any(one.held_out for one in found.final)
     which = "held-out recordings" if held else "the recordings, all of which were fitted"
