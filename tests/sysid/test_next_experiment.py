@@ -58,6 +58,12 @@ def test_without_a_rival_it_narrows_down_a_value(case):
     assert narrower > 1.2
 
 
+def test_a_recording_that_narrows_no_value_is_not_recommended(case, monkeypatch):
+    model, coulomb, _ = case
+    monkeypatch.setattr("rr_opt.machines.racer.next_experiment._NARROWER", 1e3)
+    assert next_experiment(model, coulomb, None) is None
+
+
 def test_no_gait_that_the_servo_can_do_is_no_plan(case):
     model, *fits = case
     slow = replace(ROBOT, servo=replace(ROBOT.servo, rate_limit=0.1))

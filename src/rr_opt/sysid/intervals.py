@@ -90,8 +90,8 @@ def released(fit: Fit) -> Fit:
     """
     nominal = {q.name: q for q in fit.problem.quantities}
     once: list[str] = []
+    size = _sizes(fit)
     while len(once) < SETTINGS.most_effects:
-        size = _sizes(fit)
         held = [q.name for q in fit.problem.quantities if not q.free and q.name not in once]
         worst = max(held, key=size.__getitem__, default="")
         if not held or size[worst] <= limit(fit):
@@ -103,6 +103,7 @@ def released(fit: Fit) -> Fit:
         least = min(doubtful, key=size.__getitem__, default="")
         if doubtful and size[least] <= limit(fit):
             fit = _with(fit, nominal[least])
+            size = _sizes(fit)
         once.append(worst)
     return fit
 

@@ -67,7 +67,8 @@ class MachineModel(Model, Protocol):
 
     def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> NextExperiment | None:
         """The recording that would best discriminate between the answer and its rival, the
-        runner-up with its name; or that would most narrow the least certain value."""
+        runner-up with its name; or that would most narrow the least certain value; None if no
+        recording would."""
         ...
 
     def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:

@@ -3,7 +3,7 @@
 Two candidate models predict a recording that is not made yet; the misfit of the rival, refitted to
 it and to all existing recordings, discriminates between the two (T-optimal design, Atkinson and
 Fedorov 1975). With a single candidate left, the recording is sought that most narrows the least
-certain value. Both are linearised: every feasible gait is one linearised run.
+certain value that a recording can narrow. Both are linearised: every feasible gait is one run.
 """
 
 import itertools
@@ -35,6 +35,8 @@ _RATE = 25.0
 """Samples a second of a planned recording; more add information, but do not change the ranking."""
 _TOLD_APART = 0.3
 """RMS separation of two candidates, in sigma, that makes a recording worthwhile."""
+_NARROWER = 1.1
+"""Factor by which a recording has to narrow an interval to be worthwhile."""
 
 _STATE_STEPS = 3
 """Gauss-Newton steps for the initial states, as a poor guess of them counts as a difference."""
@@ -72,7 +74,7 @@ def next_experiment(
     sentence = (
         f"Record {plans[k].seconds:.0f} s at amplitude {gait.amplitude:.2f} rad, period "
         f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, start: {plans[k].start}. This would "
-        f"narrow the interval of {words}, the least certain value, by a factor of {factor:.1f}."
+        f"narrow the interval of {words} by a factor of {factor:.1f}."
     )
     return _answer(plans[k], (_names(best), quantity), apart, sentence)
 
@@ -219,30 +221,29 @@ def _separations(planned: RacerModel, rival: Fit) -> Array:
 def _narrowed(
     planned: RacerModel, best: Fit, begun: Mapping[Segment, Array]
 ) -> tuple[int, str, float, float] | None:
-    """The plan that most narrows the least certain value; that value's name, the factor, and the
-    size of its effect in the recording, RMS in sigma."""
+    """The plan that most narrows the least certain value of those that one narrows; that value's
+    name, the factor, and the size of its effect in the recording, RMS in sigma."""
     if not best.u.size:
         return None
     _, plans = _linearised(planned, best, begun)
+    added = {run: H for run, (H, value, _) in plans.items() if np.isfinite(value)}
+    if not added:
+        return None
     H0, _, _ = best.information()
     before = np.sqrt(np.diag(np.linalg.inv(H0)))
+    after = {run: np.sqrt(np.diag(np.linalg.inv(H0 + H))) for run, H in added.items()}
     quantities = best.problem.quantities
-    own = [k for k, q in enumerate(quantities) if not q.known] or list(range(len(quantities)))
-    size = [
-        before[k] * quantities[k].scale / max(abs(best.values[quantities[k].name]), 1e-12)
-        if not quantities[k].known
-        else before[k]
-        for k in own
-    ]
-    worst = own[int(np.argmax(size))]
-    factors = {
-        run: before[worst] / math.sqrt(np.linalg.inv(H0 + H)[worst, worst])
-        for run, (H, value, _) in plans.items()
-        if np.isfinite(value)
-    }
-    if not factors:
-        return None
-    run = max(factors, key=lambda k: factors[k])
-    H = plans[run][0]
-    shown = math.sqrt(H[worst, worst] / planned.runs[run].values.size) * float(before[worst])
-    return run, quantities[worst].name, float(factors[run]), shown
+
+    def uncertainty(k: int) -> float:
+        q = quantities[k]
+        value = 1.0 if q.known else max(abs(best.values[q.name]), 1e-12) / q.scale
+        return float(before[k]) / value
+
+    own = [k for k, q in enumerate(quantities) if not q.known] or range(len(quantities))
+    for k in sorted(own, key=uncertainty, reverse=True):
+        run = min(after, key=lambda run: after[run][k])
+        factor = float(before[k] / after[run][k])
+        if factor >= _NARROWER:
+            shown = math.sqrt(added[run][k, k] / planned.runs[run].values.size) * float(before[k])
+            return run, quantities[k].name, factor, shown
+    return None
