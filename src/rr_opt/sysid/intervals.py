@@ -85,8 +85,8 @@ def released(fit: Fit) -> Fit:
     """The fit without the priors of values that are certainly wrong, released one at a time: priors
     spread one large deviation over several values, so each wrong value biases others.
 
-    Stepwise: when another value is released, an earlier one may turn out to be right after all. It
-    gets its prior back, or each of the two would excuse the other.
+    Stepwise: a value that, released, is not certainly wrong gets its prior back, or it would excuse
+    others unnoticed. This may be an earlier one.
     """
     nominal = {q.name: q for q in fit.problem.quantities}
     once: list[str] = []
@@ -96,15 +96,15 @@ def released(fit: Fit) -> Fit:
         worst = max(held, key=size.__getitem__, default="")
         if not held or size[worst] <= limit(fit):
             break
+        once.append(worst)
         own = nominal[worst]
         fit = _with(fit, replace(own, scale=own.scale * SETTINGS.effect_prior, free=True))
         size = _sizes(fit)
         doubtful = [q.name for q in fit.problem.quantities if q.free and q.name in once]
-        least = min(doubtful, key=size.__getitem__, default="")
-        if doubtful and size[least] <= limit(fit):
+        least = min(doubtful, key=size.__getitem__)
+        if size[least] <= limit(fit):
             fit = _with(fit, nominal[least])
             size = _sizes(fit)
-        once.append(worst)
     return fit
 
 

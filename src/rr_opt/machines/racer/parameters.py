@@ -13,6 +13,7 @@ from rr_opt.model.experiment import Experiment
 from rr_opt.model.parameters import PARAMETERS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse
 from rr_opt.sysid.model import EffectInfo, Form, Quantity
+from rr_opt.sysid.settings import SETTINGS
 
 _CHANNELS = {
     "actuation": "actuation",
@@ -109,8 +110,9 @@ def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
         # both.
         low, high = value / known.factor, value * known.factor
         return Quantity(name, unit, value, value, True, low, high, value, free=True)
-    low = 0.0 if PARAMETERS[name].symbol == "a" else value / 3
-    return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
+    reach = max(2 * abs(value), SETTINGS.effect_prior * known.sigma)
+    low = value / 3 if PARAMETERS[name].above == 0 else value - reach
+    return Quantity(name, unit, value, known.sigma, True, low, value + reach, value)
 
 
 def _zero(name: str, sigma: float) -> Quantity:
