@@ -38,3 +38,29 @@ def test_a_centre_of_mass_on_the_axle_can_be_found_behind_it():
     values = {q.name: q.value for q in made.parameters} | values
     model = recorded(given, lambda k, start: predicted(made, k, values, (), start), seed=3)
     assert base_of(model).fit.values["a2"] == pytest.approx(true, abs=5e-4)
+
+
+@pytest.mark.parametrize("kappa", [0.0, 4e-6])
+def test_a_value_known_to_a_factor_may_be_anything_usual_if_it_is_0(kappa):
+    given = experiment()
+    bare = replace(given.robot, platform1=replace(given.robot.platform1, kappa=kappa))
+    (one,) = (q for q in RollerRacer(replace(given, robot=bare)).parameters if q.name == "kappa1")
+    assert one.low <= kappa < 1e-5 < one.high
+    assert one.scale > 0
+
+
+def test_what_is_known_exactly_is_not_fitted():
+    given = experiment()
+    exact = replace(given, uncertainty={**given.uncertainty, "m1": Uncertainty(0.0)})
+    assert "m1" not in [q.name for q in RollerRacer(exact).parameters]
+
+
+def test_friction_that_was_left_out_is_found():
+    given = experiment(seconds=20.0)
+    made = RollerRacer(given)
+    values = {q.name: q.value for q in made.parameters}
+    bare = replace(given.robot, platform1=replace(given.robot.platform1, kappa=0.0))
+    model = recorded(
+        replace(given, robot=bare), lambda k, start: predicted(made, k, values, (), start), seed=3
+    )
+    assert base_of(model).fit.values["kappa1"] == pytest.approx(4e-6, rel=0.1)

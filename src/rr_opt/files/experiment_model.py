@@ -107,14 +107,14 @@ def shares_of_nothing(model: Any, robot: Robot) -> Iterator[tuple[str, str]]:
     values = parameters_of(robot)
     for key in model.model_fields_set:
         spread = getattr(model, key)
-        if spread is None or not (spread.relative or spread.factor):
+        if spread is None or not spread.relative:
             continue
         names = [one.name for one in PARAMETERS.values() if key in (one.name, one.symbol)]
         zeros = [name for name in names if values[name] == 0]
         if zeros:
             yield (
                 key,
-                f"The nominal {' and '.join(zeros)} is 0, and so is any share or multiple of it: "
+                f"The nominal {' and '.join(zeros)} is 0, and so is any share of it: "
                 "it would be taken as exact. Write an absolute value, such as "
                 f"`{PARAMETERS[zeros[0]].sigma_example}`.",
             )

@@ -167,7 +167,7 @@ def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None
     for one in machine.parameters:
         spread = getattr(model.uncertainty, one.name) or one.spread
         known = spread.of(nominal[one.name])
-        if known.sigma or (known.factor and nominal[one.name]):  # a multiple of nothing is nothing
+        if not known.exact:
             uncertainty[one.name] = known
     sha = fingerprint((file, *(one.file for one in planned)))
     name = file.absolute().parent.name

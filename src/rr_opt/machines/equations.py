@@ -17,6 +17,7 @@ from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import EffectInfo, Form, Quantity, Request
 from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath, Path, System
+from rr_opt.units import Number
 
 _EVERY = 0.05
 """s, over which rates are averaged to suppress noise."""
@@ -68,9 +69,13 @@ def parameter_quantity(machine: Machine, name: str, value: float, known: Uncerta
     own = machine.parameter(name)
     assert own is not None
     if known.factor:
-        low, high = sorted((value / known.factor, value * known.factor))
+        # 0 has no factor: such a value may be anything usual.
+        size = (
+            abs(value) or abs(Number(own.unit, own.example).read(own.example)) or own.spread.sigma
+        )
+        low, high = sorted((value / known.factor, (value or size) * known.factor))
         low = low if own.low > 0 else own.low  # friction may be zero
-        return Quantity(name, own.unit, value, abs(value), True, low, high, value, free=True)
+        return Quantity(name, own.unit, value, size, True, low, high, value, free=True)
     return Quantity(name, own.unit, value, known.sigma, True, own.low, own.high, value)
 
 

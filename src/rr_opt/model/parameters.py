@@ -21,11 +21,17 @@ class Uncertainty:
     """How well a nominal value is known.
 
     sigma   one standard deviation, SI; unused with `factor`
-    factor  the value lies between value/factor and value*factor, and nothing more is known
+    factor  the value lies between value/factor and value*factor, and nothing more is known; if it
+            is 0, up to that many times its usual size
     """
 
     sigma: float = 0.0
     factor: float | None = None
+
+    @property
+    def exact(self) -> bool:
+        """Whether the value is known exactly."""
+        return not (self.sigma or self.factor)
 
 
 UNKNOWN_FACTOR = 5.0

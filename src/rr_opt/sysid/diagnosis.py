@@ -6,6 +6,7 @@ from typing import Literal
 
 from rr_opt.array import Array
 from rr_opt.formatting import words_of
+from rr_opt.messages import listed
 from rr_opt.sysid.settings import SETTINGS
 
 Verdict = Literal["consistent", "parameters", "missing_physics", "unexplained"]
@@ -223,16 +224,15 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     worth  what it is worth in the machine's own terms: `the place was 8 mm off and is 1 mm off; `
     doubt  why nothing is named although something is missing
     """
-    names = (words_of(one.name) for one in found.findings)
-    listed = " and ".join(names)
-    wrong = f"values of {listed} are" if len(found.findings) > 1 else f"value of {listed} is"
+    names = listed(words_of(one.name) for one in found.findings)
+    wrong = f"values of {names} are" if len(found.findings) > 1 else f"value of {names} is"
     sure = ", ".join(f"{100 * one.confidence:.0f} %" for one in found.findings)
     differs = found.before**2 - 1 > SETTINGS.none**2
     refitted = " once its values are refitted within their uncertainties" if differs else ""
     opening = {
         "consistent": f"The nominal model explains the recordings{refitted}.",
         "parameters": f"The model is right, but the {wrong} not.",
-        "missing_physics": f"The model leaves out {listed} (confidence {sure}).",
+        "missing_physics": f"The model leaves out {names} (confidence {sure}).",
         "unexplained": "Physics is missing; no effect in the catalogue is shown to be the cause.",
     }[found.verdict]
     held = any(one.held_out for one in found.final)

@@ -46,9 +46,9 @@ def uncertain(experiment: Experiment, setting: OperatingRange) -> tuple[Quantity
     """The robot's own values that are not known exactly, those of the effects that it has, and the
     capture system's zeros."""
     values = nominal(experiment)
-    free = experiment.uncertainty
-    own = [_parameter(name, values[name], free[name]) for name in PARAMETERS if name in free]
-    own += [_zero(name, free[name].sigma) for name in ZEROS.values() if name in free]
+    known = {name: one for name, one in experiment.uncertainty.items() if not one.exact}
+    own = [_parameter(name, values[name], known[name]) for name in PARAMETERS if name in known]
+    own += [_zero(name, known[name].sigma) for name in ZEROS.values() if name in known]
     return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
 
 
@@ -104,15 +104,19 @@ def _present(use: EffectUse, setting: OperatingRange) -> Iterator[Quantity]:
 
 
 def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
-    unit = PARAMETERS[name].unit
+    own = PARAMETERS[name]
     if known.factor:
         # Not on a log scale: the motion is nearly linear in kappa, and best determines the sum of
-        # both.
-        low, high = value / known.factor, value * known.factor
-        return Quantity(name, unit, value, value, True, low, high, value, free=True)
-    reach = max(2 * abs(value), SETTINGS.effect_prior * known.sigma)
-    low = value / 3 if PARAMETERS[name].above == 0 else value - reach
-    return Quantity(name, unit, value, known.sigma, True, low, value + reach, value)
+        # both. 0 has no factor: such a value may be anything usual.
+        size = abs(value) or own.quantity.read(own.example)
+        positive, high = value / known.factor, size * known.factor
+        low = -high
+    else:
+        size = known.sigma
+        reach = max(2 * abs(value), SETTINGS.effect_prior * size)
+        positive, low, high = value / 3, value - reach, value + reach
+    low = low if own.symbol == "a" else positive
+    return Quantity(name, own.unit, value, size, True, low, high, value, free=bool(known.factor))
 
 
 def _zero(name: str, sigma: float) -> Quantity:
