@@ -92,16 +92,15 @@ def _run(document: FileData, file: Path) -> tuple[PlannedRun | None, list[Issue]
     model, issues = validate(RecordingModel, document)
     gait, found = _gait(document, file) if "gait" in document.data else (None, [])
     issues += found
+    named: dict[str, Path] = {}
     for key in ("file", "servo_log"):
-        name = document.data.get(key)
-        why = unreadable(recording_path(file.parent / name)) if isinstance(name, str) else ""
-        if why:
-            issues.append(document.error((key,), f"Read {shown(name)}. {why}"))
+        if isinstance(name := document.data.get(key), str):
+            named[key] = recording_path(file.parent / name)
+            if why := unreadable(named[key]):
+                issues.append(document.error((key,), f"Read {shown(name)}. {why}"))
     if model is None or gait is None or issues:
         return None, issues
-    run = recording_path(file.parent / model.file)
-    log = None if model.servo_log is None else recording_path(file.parent / model.servo_log)
-    return PlannedRun(run, gait, model.use, model.start, log), issues
+    return PlannedRun(named["file"], gait, model.use, model.start, named.get("servo_log")), issues
 
 
 def _gait(document: FileData, file: Path) -> tuple[Gait | None, list[Issue]]:

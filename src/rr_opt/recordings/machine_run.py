@@ -87,10 +87,9 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         y, wild = _without_wild(y)
         if wild:
             doubts.append(f"{c.name}: outliers dropped: {wild}.")
-        inner = c in machine.inputs
-        if inner or c.angle:
+        if c in machine.inputs:
             known = np.isfinite(y)
-            y = np.interp(t, t[known], y[known]) if inner else y
+            y = np.interp(t, t[known], y[known])
         data[c.name] = y
     held = held_for([data[c.name] for c in machine.inputs])
     for c in machine.channels:
