@@ -58,7 +58,7 @@ def read_columns(
         if name in units and column.factor == 1:
             column = replace(column, factor=_factor(units[name], name, header, text.file))
         read = table.values[:, header.names.index(name)]
-        values[name], notices = _converted(read, column)
+        values[name], notices = converted(read, column)
         doubts += notices
     t = values.pop("t")
     order = in_order(t, np.column_stack([*values.values()]), table.lines)
@@ -121,7 +121,7 @@ def _factor(unit: str, channel: str, header: Header, file: str) -> float:
         refuse(file, f"The unit of `{channel}`: {error}", header.at + 1)
 
 
-def _converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
+def converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
     """Counts with their sign, and in SI."""
     notices = []
     if column.bits:
@@ -156,20 +156,18 @@ def _check(
         wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
     if missing:
         others = [_WITH_UNIT.sub(r"\1", name) for name in header.names if name not in known]
-        meant_by = guesses(others, missing)
         advice = "Add what is missing."
-        if meant_by:
-            given = {name: one for name, one in columns.items() if name in header.names}
-            meant = given | {
-                name: Column(column, unit=_unit_in(column, name))
-                for name, column in meant_by.items()
-            }
+        if guessed := guesses(others, missing):
+            meant = {name: Column(one, unit=_unit_in(one, name)) for name, one in guessed.items()}
+            meant |= {name: one for name, one in columns.items() if name in header.names}
             named = [(name, meant[name]) for name in known if name in meant]
             entries = ", ".join(f"{name}: {_entry(one)}" for name, one in named)
             advice = f"Rename them, or write `columns: {{{entries}}}` in the experiment file"
             if all(one.unit or (one.factor == 1 and not one.bits) for _, one in named):
-                units = {name: f" [{one.unit}]" if one.unit else "" for name, one in named}
-                options = ",".join(f"{name}={one.column}{units[name]}" for name, one in named)
+                options = ",".join(
+                    f"{name}={one.column}" + (f" [{one.unit}]" if one.unit else "")
+                    for name, one in named
+                )
                 advice += f', or --columns "{options}" for one recording'
             advice += "."
         # A letter alone is like no other: the columns that there are say more.
