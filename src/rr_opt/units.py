@@ -8,9 +8,11 @@ Angles are distinguished from plain numbers: 30 Hz is not 30 rad/s, and 5 % is n
 """
 
 import math
+import operator
 import re
 import sys
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -229,13 +231,8 @@ class Number:
             number = to_si(value, self.unit)
         except InputError as error:
             raise InputError(f"{error} Write for example `{self.example}`.") from None
-        inside = (
-            (self.above is None or number > self.above)
-            and (self.at_least is None or number >= self.at_least)
-            and (self.at_most is None or number <= self.at_most)
-            and (self.below is None or number < self.below)
-            and (abs(number) < LARGEST or (self.endless and number == math.inf))
-        )
+        inside = all(holds(number, bound) for _, _, holds, bound in self._bounds)
+        inside &= abs(number) < LARGEST or (self.endless and number == math.inf)
         if not inside:
             known = "" if isinstance(value, int | float) else f", {number:.6g} {self.unit}".rstrip()
             known += ", more than any quantity" if LARGEST <= abs(number) < math.inf else ""
@@ -245,31 +242,27 @@ class Number:
             )
         return number
 
+    @property
+    def _bounds(self) -> list[tuple[str, str, Callable[[float, float], bool], float]]:
+        """Each bound in words and in JSON Schema, what makes a number keep it, and its value."""
+        bounds = (
+            ("above", "exclusiveMinimum", operator.gt, self.above),
+            ("at least", "minimum", operator.ge, self.at_least),
+            ("at most", "maximum", operator.le, self.at_most),
+            ("below", "exclusiveMaximum", operator.lt, self.below),
+        )
+        return [(word, key, holds, n) for word, key, holds, n in bounds if n is not None]
+
     def range_text(self) -> str:
         """What is expected, in words."""
-        parts = [
-            f"{word} {bound:.6g}"
-            for word, bound in (
-                ("above", self.above),
-                ("at least", self.at_least),
-                ("at most", self.at_most),
-                ("below", self.below),
-            )
-            if bound is not None
-        ]
+        parts = [f"{word} {bound:.6g}" for word, _, _, bound in self._bounds]
         kind = f"a number in {self.unit}" if self.unit else "a number"
         last = ", or .inf for no limit" if self.endless else ""
         return " ".join([kind, " and ".join(parts) or "that is finite"]) + last
 
     def json_schema(self) -> dict[str, Any]:
         """JSON Schema: a number within the range, or a text with a unit."""
-        bounds = {
-            "exclusiveMinimum": self.above,
-            "minimum": self.at_least,
-            "maximum": self.at_most,
-            "exclusiveMaximum": self.below,
-        }
-        number = {"type": "number", **{k: v for k, v in bounds.items() if v is not None}}
+        number = {"type": "number", **{key: bound for _, key, _, bound in self._bounds}}
         unit = self.unit or "dimensionless"
         text = {"type": "string", "description": f"a number with a unit of the kind {unit}"}
         return {"anyOf": [number, text], "examples": [self.example], "x-unit": unit}

@@ -25,7 +25,7 @@ from rr_opt.model.machine import Machine, MachineExperiment
 from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import inspect_experiment, is_experiment, usable
-from rr_opt.recordings.inspection import Circumstances, inspect_file
+from rr_opt.recordings.inspection import Circumstances, inspected
 from rr_opt.recordings.machine_run import machine_experiment
 from rr_opt.recordings.readers import ReadOptions
 from rr_opt.recordings.readers.plain_csv import columns_from
@@ -78,7 +78,7 @@ def inspect(
             options=ReadOptions(columns=columns_from(columns or {})),
             gait=gait, start=start, servo_log=log,
         )  # fmt: skip
-        found = [inspect_file(path, known, layout=layout_file)]
+        found = [inspected(path, known, layout=layout_file)]
         sha256 = fingerprint([path])
     return InspectedRecordings(name_of(path), sha256, tuple(found))
 

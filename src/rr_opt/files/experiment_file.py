@@ -92,16 +92,15 @@ def _run(document: FileData, file: Path) -> tuple[PlannedRun | None, list[Issue]
     model, issues = validate(RecordingModel, document)
     gait, found = _gait(document, file) if "gait" in document.data else (None, [])
     issues += found
+    named: dict[str, Path] = {}
     for key in ("file", "servo_log"):
-        name = document.data.get(key)
-        why = unreadable(recording_path(file.parent / name)) if isinstance(name, str) else ""
-        if why:
-            issues.append(document.error((key,), f"Read {shown(name)}. {why}"))
+        if isinstance(name := document.data.get(key), str):
+            named[key] = recording_path(file.parent / name)
+            if why := unreadable(named[key]):
+                issues.append(document.error((key,), f"Read {shown(name)}. {why}"))
     if model is None or gait is None or issues:
         return None, issues
-    run = recording_path(file.parent / model.file)
-    log = None if model.servo_log is None else recording_path(file.parent / model.servo_log)
-    return PlannedRun(run, gait, model.use, model.start, log), issues
+    return PlannedRun(named["file"], gait, model.use, model.start, named.get("servo_log")), issues
 
 
 def _gait(document: FileData, file: Path) -> tuple[Gait | None, list[Issue]]:
@@ -194,9 +193,14 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
     if "recordings" in document.data:
         runs, found = runs_from(document, file)
         issues += found
-    if "markers" in document.data:
-        markers, found = _markers(document)
+    if isinstance(given := document.data.get("markers"), dict):
+        markers, found = layout_from(document.section("markers"))
         issues += found
+    elif "markers" in document.data:
+        message = (
+            f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
+        )
+        issues.append(document.error(("markers",), message))
     if model is not None and model.servo_counts.range == 0:
         message = "Read 0. Expected the angle that the counts span. Write for example `300 deg`."
         issues.append(document.error(("servo_counts", "range"), message))
@@ -257,11 +261,3 @@ def layout_from(document: FileData) -> tuple[Layout | None, list[Issue]]:
     return Layout(
         MappingProxyType(model.platform1), MappingProxyType(model.platform2), model.up
     ), []
-
-
-def _markers(document: FileData) -> tuple[Any, list[Issue]]:
-    given = document.data["markers"]
-    if isinstance(given, dict):
-        return layout_from(document.section("markers"))
-    message = f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
-    return None, [document.error(("markers",), message)]

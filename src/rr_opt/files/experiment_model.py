@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, SkipValidation, create_model
+from pydantic import BeforeValidator, Field, SkipValidation
 
-from rr_opt.files.fields import FileModel, Key, Keys
+from rr_opt.files.fields import FileModel, Key, Keys, optional, section
 from rr_opt.files.record import FourierRecord, FreeRecord, SineRecord
 from rr_opt.files.robot_file import RobotModel
 from rr_opt.messages import shown, unknown_word
@@ -31,20 +31,17 @@ _ZEROS = ("psi_zero", "phi_zero")
 
 
 def _fields() -> Iterator[tuple[str, Any]]:
-    def optional(unit: str, example: str, description: str, absolute: bool = False) -> Any:
-        kind = Annotated[Spread | None, Key(Uncertain(unit, example, absolute))]
-        return kind, Field(default=None, description=f"One sigma of {description}.")
-
     for symbol, one in SYMBOLS.items():
         meant = one.plural if symbol in PLATFORM_SYMBOLS else one.words
-        default = f"the {meant}, {one.unit}. Default: {one.uncertainty}"
-        yield symbol, optional(one.unit, one.sigma_example, default)
+        default = f"One sigma of the {meant}, {one.unit}. Default: {one.uncertainty}."
+        yield symbol, optional(Uncertain(one.unit, one.sigma_example), default)
     for name, one in PARAMETERS.items():
         if one.platform:
-            meant = f"platform {one.platform}'s {one.symbol}, {one.unit}"
-            yield name, optional(one.unit, one.sigma_example, meant)
+            meant = f"One sigma of platform {one.platform}'s {one.symbol}, {one.unit}."
+            yield name, optional(Uncertain(one.unit, one.sigma_example), meant)
     for key in _ZEROS:
-        yield key, optional("rad", "5 mrad", f"the zero of {key[:3]}, rad; else exact", True)
+        meant = f"One sigma of the zero of {key[:3]}, rad; else exact."
+        yield key, optional(Uncertain("rad", "5 mrad", absolute=True), meant)
 
 
 @dataclass(frozen=True)
@@ -80,12 +77,11 @@ class Uncertain:
         return number if self.absolute else {**number, "examples": [self.example, "5 %", "unknown"]}
 
 
-UncertaintyModel: Any = create_model(
+UncertaintyModel = section(
     "UncertaintyModel",
-    __base__=FileModel,
-    __doc__="How well nominal values are known: `2 mm`, `5 %`, or `unknown`, free within a factor "
-    "of 5. `m` stands for `m1` and `m2`, which take precedence; 0 is exact.",
-    **dict(_fields()),
+    "How well nominal values are known: `2 mm`, `5 %`, or `unknown`, free within a factor of 5. "
+    "`m` stands for `m1` and `m2`, which take precedence; 0 is exact.",
+    dict(_fields()),
 )
 
 
@@ -160,18 +156,13 @@ _COLUMN = ("column", "factor", "bits")
 _BITS = Count(2, 64)
 
 
-def _columns() -> Iterator[tuple[str, Any]]:
-    for name, unit in {**UNITS, "goal": "", "present": ""}.items():
-        where = f"Where {name}{f' ({unit})' if unit else ''} is."
-        kind = Annotated[Column | None, Key(ColumnOf(unit))]
-        yield name, (kind, Field(default=None, description=where))
-
-
-ColumnsModel: Any = create_model(
+ColumnsModel = section(
     "ColumnsModel",
-    __base__=FileModel,
-    __doc__="Columns and units of the channels in text files that name them differently.",
-    **dict(_columns()),
+    "Columns and units of the channels in text files that name them differently.",
+    {
+        name: optional(ColumnOf(unit), f"Where {name}{f' ({unit})' if unit else ''} is.")
+        for name, unit in {**UNITS, "goal": "", "present": ""}.items()
+    },
 )
 
 Up = Literal["x", "y", "z", "-x", "-y", "-z"]

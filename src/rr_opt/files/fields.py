@@ -5,6 +5,7 @@ the pydantic model of them, and `Keys` reads a mapping of a file as such an obje
 """
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field
 from functools import lru_cache
 from typing import Annotated, Any, TypeVar, get_args, get_type_hints
@@ -119,6 +120,16 @@ def described(one: dataclasses.Field[Any], reader: Reader | None) -> Any:
     elif one.default_factory is not MISSING:
         given["default_factory"] = one.default_factory
     return Field(**given)
+
+
+def optional(reader: Any, description: str) -> tuple[Any, Any]:
+    """A key of a `section` that may be absent."""
+    return Annotated[Any, Key(reader)], Field(default=None, description=description)
+
+
+def section(name: str, doc: str, fields: Mapping[str, Any]) -> Any:
+    """The keys of a section that are known only when the program runs."""
+    return create_model(name, __base__=FileModel, __doc__=doc, **fields)
 
 
 Model = TypeVar("Model", bound=BaseModel)

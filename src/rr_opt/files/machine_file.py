@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, SkipValidation, create_model
+from pydantic import Field, SkipValidation
 
 from rr_opt.files.experiment_model import ColumnOf, Uncertain
-from rr_opt.files.fields import FileModel, Key, validate
+from rr_opt.files.fields import Key, optional, section, validate
 from rr_opt.files.issue import Issue, has_errors, required
 from rr_opt.files.source import experiment_path, fingerprint, read_document, unreadable
 from rr_opt.files.yaml_text import FileData
@@ -36,15 +36,6 @@ class _Where:
         return {"anyOf": [{"type": "number"}, *ColumnOf(self.unit).json_schema()["anyOf"]]}
 
 
-def _section(name: str, doc: str, fields: Mapping[str, Any]) -> Any:
-    return create_model(name, __base__=FileModel, __doc__=doc, **fields)
-
-
-def _optional(reader: Any, description: str) -> tuple[Any, Any]:
-    """A key that may be absent."""
-    return Annotated[Any, Key(reader)], Field(default=None, description=description)
-
-
 def _optional_section(model: Any, description: str) -> tuple[Any, Any]:
     """A section that may be absent, as all its keys may be."""
     return model, Field(default_factory=model, description=description)
@@ -63,7 +54,7 @@ def model_of(machine: Machine) -> Any:
         for one in machine.parameters
     }
     known = {
-        one.name: _optional(
+        one.name: optional(
             Uncertain(one.unit, one.example),
             f"One sigma of the {one.words}, {one.unit}. "
             f"Default: {_spread_words(one.spread, one.unit)}.",
@@ -71,18 +62,18 @@ def model_of(machine: Machine) -> Any:
         for one in machine.parameters
     }
     noise = {
-        one.name: _optional(
+        one.name: optional(
             Number(one.unit, "0.001", above=0), f"Of {one.words}, {one.unit}; else from the data."
         )
         for one in machine.channels
     }
     channels = [(one.name, one.unit, one.words) for one in machine.channels]
     where = {
-        name: _optional(_Where(unit), f"Where {words} is, {unit}; or its constant value.")
+        name: optional(_Where(unit), f"Where {words} is, {unit}; or its constant value.")
         for name, unit, words in (("t", "s", "the time"), *channels)
     }
-    columns = _section("ColumnsModel", "Columns by channel.", where)
-    entry = _section(
+    columns = section("ColumnsModel", "Columns by channel.", where)
+    entry = section(
         "RecordingModel",
         "One recording.",
         {
@@ -91,15 +82,15 @@ def model_of(machine: Machine) -> Any:
             "columns": _optional_section(columns, "Its own columns."),
         },
     )
-    uncertainty = _section("UncertaintyModel", "How well nominal values are known.", known)
-    noises = _section("NoiseModel", "One sigma of what is recorded.", noise)
-    return _section(
+    uncertainty = section("UncertaintyModel", "How well nominal values are known.", known)
+    noises = section("NoiseModel", "One sigma of what is recorded.", noise)
+    return section(
         "ExperimentModel",
         f"{machine.words[0].upper()}{machine.words[1:]}: {machine.equation}.",
         {
             "machine": (str, Field(description="What was recorded.")),
             "parameters": (
-                _section("ParametersModel", "Nominal values.", parameters),
+                section("ParametersModel", "Nominal values.", parameters),
                 Field(description="Nominal values."),
             ),
             "uncertainty": _optional_section(uncertainty, "How well they are known."),
@@ -147,13 +138,13 @@ def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None
     sections, found = document.entries("recordings", "a list of recordings", "{file: ...}")
     issues += found
     planned: list[PlannedRecording] = []
-    for section in sections:
-        read, found = validate(entry, section)
+    for entered in sections:
+        read, found = validate(entry, entered)
         issues += found
         if read is None:
             continue
         if why := unreadable(file.parent / read.file):
-            issues.append(section.error(("file",), f"Read {shown(read.file)}. {why}"))
+            issues.append(entered.error(("file",), f"Read {shown(read.file)}. {why}"))
             continue
         own = {**_given(model.columns if model else None), **_given(read.columns)}
         planned.append(PlannedRecording(file.parent / read.file, read.use, own))

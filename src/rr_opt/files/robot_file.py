@@ -54,18 +54,6 @@ def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
         )
 
 
-def too_much_friction(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Key path and message of friction that would stop any robot instantly."""
-    for key, k in (("platform1", robot.k1), ("platform2", robot.k2)):
-        if k > _LARGEST_FRICTION:
-            yield (
-                (key, "kappa"),
-                f"The friction along the floor is k = kappa/h^2 = {k:.3g} N s/m per wheel. "
-                f"Expected at most {_LARGEST_FRICTION:.4g}: nothing would roll. Check the "
-                "units of kappa and h.",
-            )
-
-
 def singular_posture(robot: Robot) -> str | None:
     """A message if the servo can reach the posture where S1 = c1 cos phi + c2 vanishes."""
     limit, singular = robot.servo.angle_limit, robot.singular_angle
@@ -238,8 +226,15 @@ def robot_from(document: FileData) -> tuple[Robot | None, list[Issue]]:
         **beyond,
     )
     issues += [document.warning(path, message) for path, message in doubts(robot)]
-    stuck = [document.error(path, text) for path, text in too_much_friction(robot)]
-    return (None if stuck else robot), issues + stuck
+    for key, k in (("platform1", robot.k1), ("platform2", robot.k2)):
+        if k > _LARGEST_FRICTION:
+            message = (
+                f"The friction along the floor is k = kappa/h^2 = {k:.3g} N s/m per wheel. "
+                f"Expected at most {_LARGEST_FRICTION:.4g}: nothing would roll. Check the "
+                "units of kappa and h."
+            )
+            issues.append(document.error((key, "kappa"), message))
+    return (None if has_errors(issues) else robot), issues
 
 
 def _platform(model: PlatformModel, h: float) -> Platform:

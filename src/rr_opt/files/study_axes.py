@@ -2,8 +2,8 @@
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Annotated, Any, Literal
 
@@ -105,20 +105,19 @@ class ProblemKey:
 def key_of(name: str) -> ProblemKey:
     """The key of this name. Raises InputError if no problem file has such a key."""
     path = _split(name)
-    whole = problem_schema()
-    nodes = [whole]
+    nodes = _unfolded([problem_schema()])
     unit = None
     for depth, part in enumerate(path):
-        below, known = [], []
-        for node in nodes:
-            found, offered = _below(node, part, whole)
-            below += found
-            known += offered
+        keys = [node.get("properties", {}) for node in nodes]
+        if isinstance(part, int):
+            below = [node["items"] for node in nodes if "items" in node]
+        else:
+            below = [key[part] for key in keys if part in key]
         if not below:
-            raise InputError(_unknown(path[:depth], part, known))
-        nodes = below
+            raise InputError(_unknown(path[:depth], part, [one for key in keys for one in key]))
+        nodes = _unfolded(below)
         # An end of a pair has the unit of the pair.
-        units = [node["x-unit"] for node in _unfolded(nodes, whole) if "x-unit" in node]
+        units = [node["x-unit"] for node in nodes if "x-unit" in node]
         unit = units[0] if units else unit if isinstance(part, int) else None
     return ProblemKey(name, path, "" if unit == "dimensionless" else unit)
 
@@ -146,32 +145,17 @@ def _split(name: str) -> KeyPath:
     return tuple(path)
 
 
-def _unfolded(nodes: list[dict[str, Any]], whole: dict[str, Any]) -> list[dict[str, Any]]:
-    """The nodes, with references resolved and every alternative beside them."""
+def _unfolded(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Nodes of the schema, with references resolved and every alternative beside them."""
     seen: list[dict[str, Any]] = []
     todo = list(nodes)
     while todo:
         node = todo.pop()
         if "$ref" in node:
-            todo.append(whole["$defs"][node["$ref"].removeprefix("#/$defs/")])
+            todo.append(problem_schema()["$defs"][node["$ref"].removeprefix("#/$defs/")])
         todo += [*node.get("anyOf", []), *node.get("oneOf", [])]
         seen.append(node)
     return seen
-
-
-def _below(
-    node: dict[str, Any], part: str | int, whole: dict[str, Any]
-) -> tuple[list[dict[str, Any]], list[str]]:
-    """The schema under a key or an index of a node, and the possible keys."""
-    found: list[dict[str, Any]] = []
-    known: list[str] = []
-    for one in _unfolded([node], whole):
-        known += one.get("properties", {})
-        if isinstance(part, int) and "items" in one:
-            found.append(one["items"])
-        elif part in one.get("properties", {}):
-            found.append(one["properties"][part])
-    return found, known
 
 
 def _unknown(before: KeyPath, part: str | int, known: list[str]) -> str:
@@ -209,29 +193,8 @@ def refuse_conflict(
         )
 
 
-def refuse_repeats(steps: Sequence[tuple[Any, ...]], written: Sequence[tuple[Any, ...]]) -> None:
-    """Raise InputError if two steps of an axis are the same.
-
-    A step has a value for each key of the axis: in SI if it is a number, and as written.
-    """
-    first: dict[str, int] = {}
-    for number, step in enumerate(steps, 1):
-        same = first.setdefault("\n".join(_digits(value) for value in step), number)
-        if same != number:
-            values = ", ".join(shown(value) for value in written[number - 1])
-            raise InputError(
-                f"Read {values} as value {number}, which is value {same} again. Expected each "
-                "value once. Delete one of them."
-            )
-
-
 def _names(values: object) -> bool:
     return isinstance(values, list) and all(isinstance(value, str) for value in values)
-
-
-def _digits(value: Any) -> str:
-    """A value as text, equal for numbers that differ by rounding."""
-    return f"{value:.11e}" if isinstance(value, float) else repr(value)
 
 
 _ROUNDING = 1e-9
@@ -287,9 +250,9 @@ def doubt_about_units(given: Any, key: ProblemKey) -> str | None:
     bare = [
         name
         for name, value in written.items()
-        if value is not None and not _has_unit(value) and to_si(value, key.unit or "") != 0
+        if value is not None and not _unit_of(value) and to_si(value, key.unit or "") != 0
     ]
-    if not bare or not any(_has_unit(value) for value in written.values()):
+    if not bare or not any(map(_unit_of, written.values())):
         return None
     values = " and ".join(f"`{name}: {shown(written[name])}`" for name in bare)
     return (
@@ -298,14 +261,9 @@ def doubt_about_units(given: Any, key: ProblemKey) -> str | None:
     )
 
 
-def _has_unit(value: object) -> bool:
-    if not isinstance(value, str):
-        return False
-    try:
-        float(value)
-    except ValueError:
-        return True
-    return False
+def _unit_of(value: object) -> str:
+    """The unit that a value is written with; empty if there is none."""
+    return unit_written(value) if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True)
@@ -350,7 +308,14 @@ def line_at(
         refuse_conflict(key, data, seen)
         seen[key.path] = key, data
         if isinstance(data, dict):
-            return _ranged(document, place, key, data, issues)
+            model, found = validate(RangeModel, replace(document, data=data, prefix=place))
+            issues += found
+            if model is None:
+                return None
+            numbers = range_values(model, key)
+            if doubt := doubt_about_units(model, key):
+                issues.append(document.warning(place, doubt))
+            return Line(key, numbers, numbers, _unit([data["from"], data["to"]], key), place)
         if not isinstance(data, list) or not data:
             raise InputError(
                 f"Read {shown(data)}. Expected a list of values, or a range. Write for example "
@@ -362,32 +327,9 @@ def line_at(
         return None
 
 
-def _ranged(
-    document: FileData, place: KeyPath, key: ProblemKey, data: dict[str, Any], issues: list[Issue]
-) -> Line | None:
-    """The line of a range; None if a key of the range is wrong. Raises InputError."""
-    inner = FileData(document.file, data, document.lines, place)
-    model, found = validate(RangeModel, inner)
-    if model is None:
-        for issue in found:
-            at = (*place, issue.path.rsplit(".", 1)[-1])
-            issues.append(document.error(at, issue.message))
-        return None
-    numbers = range_values(model, key)
-    doubt = doubt_about_units(model, key)
-    if doubt:
-        issues.append(document.warning(place, doubt))
-    ends = [data["from"], data["to"]]
-    return Line(key, numbers, numbers, _unit(ends, key), place)
-
-
 def _unit(values: list[Any], key: ProblemKey) -> str:
     """The unit shared by all values except 0 and infinity; else the key's, SI."""
-    units = {
-        unit_written(value) if isinstance(value, str) else ""
-        for value in values
-        if value not in (0, math.inf)
-    }
+    units = {_unit_of(value) for value in values if value not in (0, math.inf)}
     unit = units.pop() if len(units) == 1 else ""
     return unit or key.unit or ""
 
@@ -416,16 +358,23 @@ class Axis:
         """The values of its steps, in SI of its first numeric key; None if there is none."""
         return next((line.numbers for line in self.lines if line.numbers is not None), None)
 
-    @property
-    def steps(self) -> list[tuple[Any, ...]]:
-        """The values of each step, numbers in SI."""
-        columns = [line.values if line.numbers is None else line.numbers for line in self.lines]
-        return list(zip(*columns, strict=True))
+    def refuse_repeats(self) -> None:
+        """Raise InputError if two steps are the same, but for rounding."""
+        first: dict[str, int] = {}
+        for number in range(len(self)):
+            step = [(line.numbers or line.values)[number] for line in self.lines]
+            same = first.setdefault("\n".join(map(_digits, step)), number)
+            if same != number:
+                values = ", ".join(shown(line.values[number]) for line in self.lines)
+                raise InputError(
+                    f"Read {values} as value {number + 1}, which is value {same + 1} again. "
+                    "Expected each value once. Delete one of them."
+                )
 
-    @property
-    def written(self) -> list[tuple[Any, ...]]:
-        """The values of each step, as a problem file would hold them."""
-        return list(zip(*(line.values for line in self.lines), strict=True))
+
+def _digits(value: Any) -> str:
+    """A value as text, equal for numbers that differ by rounding."""
+    return f"{value:.11e}" if isinstance(value, float) else repr(value)
 
 
 def axes_of(document: FileData) -> tuple[list[Axis], list[Issue]]:
@@ -448,7 +397,7 @@ def axes_of(document: FileData) -> tuple[list[Axis], list[Issue]]:
         elif good and len(good) == len(lines):
             axis = Axis(tuple(good))
             try:
-                refuse_repeats(axis.steps, axis.written)
+                axis.refuse_repeats()
             except InputError as error:
                 note(good[0].place if len(good) == 1 else place, str(error))
             axes.append(axis)

@@ -59,32 +59,28 @@ def with_values(
 
 
 def _set(data: Any, keys: KeyPath, value: Any) -> None:
-    """Set a value in nested data, creating missing sections."""
-    for depth, key in enumerate(keys[:-1]):
-        if isinstance(key, str) and isinstance(data, dict):
-            missing: Any = {} if isinstance(keys[depth + 1], str) else []
-            data = data.setdefault(key, missing)
-        else:
-            data = _entry(data, keys[: depth + 1])
-    last = keys[-1]
-    if isinstance(last, str) and isinstance(data, dict):
-        data[last] = value
-        return
-    _entry(data, keys)
-    data[last] = value
+    """Set a value in nested data, creating missing sections. Raises InputError without a place."""
+    for depth, key in enumerate(keys, 1):
+        if not _holds(data, key):
+            held = f"a list of {len(data)}" if isinstance(data, list) else shown(data)
+            number = "an entry of that number"
+            wanted = number if isinstance(key, int) else "keys with values under it"
+            raise InputError(
+                f"The problem has {held} at `{path_text(keys[: depth - 1])}`. Expected {wanted}, "
+                f"to set `{path_text(keys[:depth])}`. Write it in the problem first."
+            )
+        if depth == len(keys):
+            data[key] = value
+        elif isinstance(data, dict):
+            data.setdefault(key, {} if isinstance(keys[depth], str) else [])
+        data = data[key]
 
 
-def _entry(data: Any, keys: KeyPath) -> Any:
-    """The entry at an existing index."""
-    at = keys[-1]
-    if isinstance(at, int) and isinstance(data, list) and at < len(data):
-        return data[at]
-    held = f"a list of {len(data)}" if isinstance(data, list) else shown(data)
-    wanted = "an entry of that number" if isinstance(at, int) else "keys with values under it"
-    raise InputError(
-        f"The problem has {held} at `{path_text(keys[:-1])}`. Expected {wanted}, to set "
-        f"`{path_text(keys)}`. Write it in the problem first."
-    )
+def _holds(data: Any, key: str | int) -> bool:
+    """Whether a value may be set there: under any key of a section, at an index that a list has."""
+    if isinstance(data, dict):
+        return isinstance(key, str)
+    return isinstance(data, list) and key in range(len(data))
 
 
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*|'[^']*'")

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from rr_opt.array import Array
-from rr_opt.model.experiment import Experiment
+from rr_opt.model.experiment import Experiment, Recording
 from rr_opt.model.gait import Gait
 from rr_opt.recordings.warnings import notice
 
@@ -179,27 +179,25 @@ def at_commanded_rate(experiment: Experiment) -> Experiment:
     Whatever its errors, a servo keeps its command's period, so a recorder's clock that runs fast or
     slow shows, to a few millionths. One recorder is assumed for all runs.
     """
-    drifts, sigmas = [], []
-    for run in experiment.runs:
-        recording, rest = run.recording, run.start == "rest"
-        fit = against_command(recording.t, recording.data("phi"), run.gait, from_rest=rest)
-        if fit is not None:
-            drifts.append(fit.drift)
-            sigmas.append(fit.sigma[1])
-    if not drifts:
+    fits = [
+        against_command(one.t, one.data("phi"), run.gait, from_rest=run.start == "rest")
+        for run in experiment.runs
+        for one in [run.recording]
+    ]
+    drifts = np.array([fit.drift for fit in fits if fit])
+    if not len(drifts):
         return experiment
-    weights = np.array(sigmas) ** -2.0
+    weights = np.array([fit.sigma[1] for fit in fits if fit]) ** -2.0
     drift = float(np.average(drifts, weights=weights))
-    scatter = float(np.average((np.array(drifts) - drift) ** 2, weights=weights))
+    scatter = float(np.average((drifts - drift) ** 2, weights=weights))
     error = math.sqrt(1 / weights.sum() + scatter / len(drifts))
     if abs(drift) < max(RUNS_OFF, _CERTAIN * error):
         return experiment
     said = notice("clock.rate", drift=1e2 * drift)
-    runs = []
-    for run in experiment.runs:
-        recording = run.recording
-        recording = replace(
-            recording, t=recording.t * (1 + drift), doubts=(*recording.doubts, said)
-        )
-        runs.append(replace(run, recording=recording))
+
+    def corrected(recording: Recording) -> Recording:
+        doubts = (*recording.doubts, said)
+        return replace(recording, t=recording.t * (1 + drift), doubts=doubts)
+
+    runs = (replace(run, recording=corrected(run.recording)) for run in experiment.runs)
     return replace(experiment, runs=tuple(runs))

@@ -72,35 +72,28 @@ class Inspection:
         return self.recording.name
 
 
-def inspect_file(path: Path, known: Circumstances, *, layout: Path | None = None) -> Inspection:
-    """One recording. Raises InputError with what cannot be read or matched.
+def inspected(file: Path, known: Circumstances, *, layout: Path | None = None) -> Inspection:
+    """The content of a file, with all that is known of it.
 
-    layout: a YAML file with the markers' places.
+    layout: a YAML file with the markers' places. Raises InvalidFileError with all errors in the
+    file and in the servo's log, and InputError, naming the file, if it is another kind of file.
     """
-    places = read_layout(layout) if layout else None
-    found = inspected(path, replace(known, layout=places))
-    if places is not None and found.markers is None:
+    if layout is not None:
+        known = replace(known, layout=read_layout(layout))
+    found = in_file(file, *read_both(file, known), known)
+    if layout is not None and found.markers is None:
         refuse(
             str(layout),
-            f"Read the places of markers. Expected a marker file to go with them, but {path.name} "
+            f"Read the places of markers. Expected a marker file to go with them, but {file.name} "
             "already has the motion. Omit --layout.",
         )
     return found
 
 
-def inspected(file: Path, known: Circumstances) -> Inspection:
-    """The content of a file, with all that is known of it.
-
-    Raises InvalidFileError with all errors in the file and in the servo's log, and InputError,
-    naming the file, if it is another kind of file.
-    """
-    return in_file(file, *read_both(file, known), known)
-
-
 def in_file(
     file: Path, read: Recording | MarkerData, log: ServoLog | None, known: Circumstances
 ) -> Inspection:
-    """The same of its content, read. Raises InvalidFileError if markers make no robot."""
+    """The same of its content. Raises InvalidFileError if markers make no robot."""
     try:
         return inspect(read, log, known)
     except InputError as error:
@@ -153,15 +146,14 @@ def inspect(read: Recording | MarkerData, log: ServoLog | None, known: Circumsta
             # Poses show no noise of their own.
             sigma = {one: np.full(len(recording), np.nan) for one in recording.channels}
             recording = replace(recording, sigma=MappingProxyType(sigma))
-            markers = replace(markers, recording=recording)
     else:
         recording = read
     if log is not None:
         synchrony = synchronised(recording, log, known.gait, known.start)
         doubts = (*recording.doubts, *log.doubts, *synchrony.doubts)
         recording = replace(synchrony.recording, doubts=doubts)
-        if markers is not None:
-            markers = replace(markers, recording=recording)
+    if markers is not None:
+        markers = replace(markers, recording=recording)
     cleaned = clean(recording)
     evidence = ExaminedRecording(
         cleaned.recording, known.robot, known.gait, known.start,

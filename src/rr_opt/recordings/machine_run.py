@@ -17,6 +17,7 @@ from rr_opt.model.machine import Channel, MachineExperiment, MachineRun
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import LARGEST
 from rr_opt.recordings.copies import Rows, copied, machine_rows_of
+from rr_opt.recordings.readers.plain_csv import converted
 from rr_opt.recordings.readers.text import decode, find_header, read_table
 
 _WILD = 8.0
@@ -87,10 +88,9 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         y, wild = _without_wild(y)
         if wild:
             doubts.append(f"{c.name}: outliers dropped: {wild}.")
-        inner = c in machine.inputs
-        if inner or c.angle:
+        if c in machine.inputs:
             known = np.isfinite(y)
-            y = np.interp(t, t[known], y[known]) if inner else y
+            y = np.interp(t, t[known], y[known])
         data[c.name] = y
     held = held_for([data[c.name] for c in machine.inputs])
     for c in machine.channels:
@@ -243,7 +243,4 @@ def _channel(one: PlannedRecording, table: Mapping[str, Array], channel: Channel
             f"`{where.column}` for {channel.name} ({channel.words}). "
             f"Write `columns: {{{channel.name}: ...}}`."
         )
-    y = found[name]
-    if where.bits:
-        y = np.where(y >= 2 ** (where.bits - 1), y - 2**where.bits, y)
-    return y * where.factor
+    return converted(found[name], where)[0]

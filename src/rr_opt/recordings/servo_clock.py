@@ -223,11 +223,6 @@ _ANOTHER = 0.05
 """Relative difference allowed between the goal's amplitude and the gait's."""
 
 
-def unlike(fit: ClockFit, phi: Array) -> bool:
-    """Whether phi (n,), rad, is another motion than the log's."""
-    return fit.scale <= 0 or fit.residual > _LEFT * float(np.nanstd(phi))
-
-
 def log_notices(
     fit: ClockFit, goal: ClockFit | None, shift: Shift | None, others: tuple[float, ...]
 ) -> Iterator[Notice]:
@@ -299,7 +294,8 @@ def synchronised(
         else ()
     )
     fits = against_log(t, phi, log, tuple(-one.offset for one in goals))
-    if not fits or unlike(fits[0], phi):
+    # Of another motion than the log's, most is left.
+    if not fits or fits[0].scale <= 0 or fits[0].residual > _LEFT * float(np.nanstd(phi)):
         return Synchrony(recording, None, None, None, (notice("log.other"),))
     period = gait.period if gait else math.nan
     pairs = [(one, two) for one in fits for two in goals or (None,)]

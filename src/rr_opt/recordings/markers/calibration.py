@@ -31,6 +31,7 @@ from rr_opt.model.experiment import Layout
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
+from rr_opt.recordings.cleaning import unwrapped
 from rr_opt.recordings.markers.rigid import Complex, bodies_of, fit, places_of, seen_from_above
 from rr_opt.recordings.noise import noise_of
 from rr_opt.recordings.readers.marker_rows import MarkerData, carriers
@@ -364,11 +365,8 @@ def axle_of(
 
 def _noise(joint: Array, heading: Array) -> Array:
     """Of along, side and turn of a recording; NaN where it cannot be estimated."""
-    known = np.isfinite(heading)
-    angle = np.full(len(heading), np.nan)
-    angle[known] = np.unwrap(heading[known])
     place = max(noise_of(one).sigma for one in joint.T)
-    return np.array([place, place, noise_of(angle).sigma])
+    return np.array([place, place, noise_of(unwrapped(heading)).sigma])
 
 
 def _rows(t: Array, joint: Array, heading: Array, seconds: float) -> Array:

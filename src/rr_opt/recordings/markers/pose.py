@@ -161,13 +161,10 @@ def fit_markers(
 
 def _renamed(bodies: Bodies, order: Order) -> Bodies:
     """The columns keep their names, and get the places of the markers that they hold."""
-    places, platform, heights = (
-        np.empty_like(one) for one in (bodies.places, bodies.platform, bodies.heights)
+    of = np.argsort(order)
+    return replace(
+        bodies, places=bodies.places[of], platform=bodies.platform[of], heights=bodies.heights[of]
     )
-    columns = list(order)
-    places[columns], platform[columns] = bodies.places, bodies.platform
-    heights[columns] = bodies.heights
-    return replace(bodies, places=places, platform=platform, heights=heights)
 
 
 def _rms(residual: Complex) -> Array:

@@ -204,60 +204,48 @@ def fit(bodies: Bodies, seen: Array) -> RigidFit:
 def _fit(bodies: Bodies, z: Complex) -> RigidFit:
     b, used, placing = bodies.places @ np.array([1, 1j]), np.isfinite(z), bodies.placing
     known = np.where(used, z, 0)
-    # By platform: whether it is seen, its own heading and P, S, 1/T, u and l.
-    there, heading, own, S, per_T, u = [], [], [], [], [], []
-    for one in (0, 1):
-        mine = used & (bodies.platform == one)
-        there.append(mine.sum(axis=1) >= FEWEST)
-        turns = (mine & there[-1][:, None]).astype(float)
-        weight = turns * placing
-        count = np.where(there[-1], weight.sum(axis=1), 1.0)
-        centre, middle = (weight * known).sum(axis=1) / count, weight @ b / count
-        off = np.conj(b - middle[:, None])
-        heading.append(np.angle(np.sum(turns * (known - centre[:, None]) * off, axis=1)))
-        arm = middle * np.exp(1j * heading[-1])
-        own.append(centre - arm)
-        S.append(np.where(there[-1], count, 0.0))
-        T = weight @ np.abs(b) ** 2 + (bodies.lever or 0.0) ** 2
-        per_T.append(1 / np.where(T > 0, T, 1.0))
-        u.append(1j * arm)
-    lever = [s * t * one for s, t, one in zip(S, per_T, u, strict=True)]
-    xx, yy, xy = (
-        sum(s * (same - p(one) * q(lv)) for s, one, lv in zip(S, u, lever, strict=True))
-        for p, q, same in ((np.real, np.real, 1), (np.imag, np.imag, 1), (np.real, np.imag, 0))
-    )
-    pull = sum(
-        s * (at - one * np.real(np.conj(lv) * at))
-        for s, at, one, lv in zip(S, own, u, lever, strict=True)
-    )
+    # By platform (2, n, k) and (2, n): its markers, whether it is seen, own heading and P, S, 1/T,
+    # u and l.
+    mine = used & (bodies.platform == np.array([[0], [1]]))[:, None]
+    there = mine.sum(axis=2) >= FEWEST
+    turns = (mine & there[..., None]).astype(float)
+    weight = turns * placing
+    S = np.where(there, weight.sum(axis=2), 0.0)
+    count = np.where(there, S, 1.0)
+    centre, middle = (weight * known).sum(axis=2) / count, weight @ b / count
+    off = np.conj(b - middle[..., None])
+    heading = np.angle(np.sum(turns * (known - centre[..., None]) * off, axis=2))
+    arm = middle * np.exp(1j * heading)
+    own, u = centre - arm, 1j * arm
+    T = weight @ np.abs(b) ** 2 + (bodies.lever or 0.0) ** 2
+    per_T = 1 / np.where(T > 0, T, 1.0)
+    lever = S * per_T * u
+    xx = (S * (1 - u.real * lever.real)).sum(axis=0)
+    yy = (S * (1 - u.imag * lever.imag)).sum(axis=0)
+    xy = (S * (0 - u.real * lever.imag)).sum(axis=0)
+    pull = (S * (own - u * np.real(np.conj(lever) * own))).sum(axis=0)
     size = xx * yy - xy * xy
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = np.where(size > 1e-12 * np.maximum(xx * yy, 1e-300), 1 / size, np.nan)
     Cxx, Cyy, Cxy = scale * yy, scale * xx, -scale * xy
     joint = Cxx * pull.real + Cxy * pull.imag + 1j * (Cxy * pull.real + Cyy * pull.imag)
-    follow = [np.real(np.conj(lv) * (joint - at)) for lv, at in zip(lever, own, strict=True)]
-    turned = [
-        np.where(is_there, angle - by, np.nan)
-        for is_there, angle, by in zip(there, heading, follow, strict=True)
-    ]
+    follow = np.real(np.conj(lever) * (joint - own))
+    angles = np.where(there, heading - follow, np.nan).T
 
     def spread_of(lv: Complex) -> Array:
         return Cxx * lv.real**2 + 2 * Cxy * lv.real * lv.imag + Cyy * lv.imag**2
 
-    psi = per_T[0] + spread_of(lever[0])
+    psi = np.where(there[0], per_T[0] + spread_of(lever[0]), np.nan)
     phi = per_T[0] + per_T[1] + spread_of(lever[1] - lever[0])
-    psi = np.where(there[0], psi, np.nan)
-    phi = np.where(there[0] & there[1], phi, np.nan)
-    angles = np.stack(turned, 1)
-    residual = np.where(
-        used, z - joint[:, None] - b * np.exp(1j * angles[:, bodies.platform]), np.nan
-    )
-    unknowns = 2 + there[0].astype(int) + there[1]
+    phi = np.where(there.all(axis=0), phi, np.nan)
+    arms = b * np.exp(1j * angles[:, bodies.platform])
+    residual = np.where(used, z - joint[:, None] - arms, np.nan)
     squares = np.nansum(placing * np.abs(residual) ** 2, axis=1)
-    freedom = 2 * np.isfinite(residual[:, placing]).sum(axis=1) - unknowns
-    if bodies.lever is not None:
+    freedom = 2 * np.isfinite(residual[:, placing]).sum(axis=1) - 2
+    if bodies.lever is None:
+        freedom -= there.sum(axis=0)
+    else:  # the headings are measured, too
         squares += bodies.lever**2 * np.nansum(np.square(follow), axis=0)
-        freedom += there[0].astype(int) + there[1]
     return RigidFit(
         np.stack([joint.real, joint.imag], 1),
         angles,
@@ -265,7 +253,7 @@ def _fit(bodies: Bodies, z: Complex) -> RigidFit:
         residual,
         squares,
         np.maximum(freedom, 0),
-    )  # fmt: skip
+    )
 
 
 FALSE_ALARM = 1e-6

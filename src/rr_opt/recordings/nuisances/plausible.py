@@ -55,7 +55,7 @@ def _reasons(given: ExaminedRecording) -> Iterator[Notice]:
         gap = float(np.diff(np.concatenate([t[:1], known, t[-1:]])).max())
         if gap > _LARGEST_GAP:
             yield notice("useless.gap", channel=name, gap=gap, most=_LARGEST_GAP)
-    moved = np.array([_range(values) for values in data.values()])
+    moved = np.array([np.subtract(*np.nanpercentile(y, (99, 1))) for y in data.values()])
     sizes = moved / given.sigma
     if sizes[3] < _STILL and given.gait and moved[3] > _COMMANDED * given.gait.amplitude > 0:
         yield notice("useless.noisy", moved=moved[3], sigma=given.sigma[3])
@@ -63,11 +63,6 @@ def _reasons(given: ExaminedRecording) -> Iterator[Notice]:
         yield notice("useless.servo", moved=moved[3])
     if sizes[:3].max() < _STILL:
         yield notice("useless.robot")
-
-
-def _range(values: Array) -> float:
-    low, high = np.nanpercentile(values, (1, 99))
-    return float(high - low)
 
 
 _ROOM, _NO_ROOM = 50.0, 1e5

@@ -13,7 +13,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,12 +112,12 @@ def marker_data(
     positions: Array,
     unit: str,
     unit_place: tuple[str, int | None],
+    rotations: Array | None = None,
     residual: Array | None = None,
     up: str = "z",
-    lever: float | None = None,
     doubts: Sequence[Notice] = (),
 ) -> MarkerData:
-    """The markers of a file in order of time, in metres, under clean names.
+    """The markers, or three points of each body, in order of time, in metres, under clean names.
 
     frame      (n,), lines (n,) numbers of the rows in the file (of frames, if it has no lines)
     t          (n,), s, on the file's clock; None: frame 1 is at 0, and frames come at the rate
@@ -126,13 +125,23 @@ def marker_data(
     labels     (k,), as written
     positions  (n, k, 3), in `unit`
     unit_place what states the unit, and in which line
-    up, lever  as of MarkerData
+    rotations  (n, k, 3, 3), of bodies, from their axes to the capture's; NaN where not seen
+    up         as of MarkerData
 
     Exact zeros are missing markers. Of frames that appear twice with different values no position
-    is kept. Raises InvalidFileError if the unit is not one of length, or the rate not one
-    of a recording.
+    is kept. Raises InvalidFileError if the unit is not one of length, the rate not one of a
+    recording, or there are fewer than two bodies.
     """
     file = source["file"]
+    if rotations is not None:
+        if len(labels) < 2:
+            refuse(
+                file,
+                f"Read the rigid body {shown(', '.join(labels))}. Expected two, one on each "
+                "platform. Export both.",
+            )
+        arm = _ARM / METRES.get(unit.casefold() or "mm", 1.0)
+        labels, positions = _points(labels, positions, rotations, arm, up)
     check_rate(rate, file)
     clean, subject, renamed = clean_labels(labels)
     doubts = [*doubts, *renamed]
@@ -180,7 +189,7 @@ def marker_data(
         rate=rate,
         residual=None if residual is None else residual[order.rows] * scale,
         up=up,
-        lever=lever,
+        lever=None if rotations is None else _ARM,
         source=MappingProxyType({**source, **found}),
         doubts=tuple(doubts),
     )
@@ -220,30 +229,10 @@ _ARM = 0.1
 """From a body's origin to its other points, and so about to the markers it was made of, m."""
 
 
-def body_data(
-    source: Mapping[str, str],
-    *,
-    names: Sequence[str],
-    positions: Array,
-    rotations: Array,
-    unit: str,
-    up: str = "z",
-    **rows: Any,
-) -> MarkerData:
-    """Three points of each body; names (k,), positions (n, k, 3), in `unit`.
-
-    rotations  (n, k, 3, 3), from the body's axes to the capture's; NaN where it was not seen
-    rows       as of `marker_data`
-
-    Raises InvalidFileError for fewer than two bodies.
-    """
-    if len(names) < 2:
-        refuse(
-            source["file"],
-            f"Read the rigid body {shown(', '.join(names))}. Expected two, one on each platform. "
-            "Export both.",
-        )
-    arm = _ARM / METRES.get(unit.casefold() or "mm", 1.0)
+def _points(
+    names: Sequence[str], positions: Array, rotations: Array, arm: float, up: str
+) -> tuple[list[str], Array]:
+    """Names and positions (n, 3 k, 3) of each body's origin and of two points at a distance."""
     labels, points = [], []
     for at, name in enumerate(names):
         origin, turned = positions[:, at], rotations[:, at]
@@ -252,9 +241,7 @@ def body_data(
         for axis, direction in _directions(turned, "xyz".index(up)):
             labels.append(f"{name} {'xyz'[axis]}")
             points.append(origin + arm * direction)
-    return marker_data(
-        source, labels=labels, positions=np.stack(points, 1), unit=unit, up=up, lever=_ARM, **rows
-    )
+    return labels, np.stack(points, 1)
 
 
 def _directions(turned: Array, up: int) -> list[tuple[int, Array]]:

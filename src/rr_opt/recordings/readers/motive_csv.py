@@ -7,15 +7,12 @@ is where Motive's own fit has them.
 Motive's y axis points up unless set otherwise: `up: y`.
 """
 
-from typing import Any
-
 import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import (
     MarkerData,
-    body_data,
     frames_of,
     marker_data,
     matrices,
@@ -87,28 +84,28 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     t = table.values[:, 1]
     # Times may be written to the millisecond, which frames are not.
     counted = frame / hertz
-    rows: dict[str, Any] = {
-        "frame": frame,
-        "lines": table.lines,
-        "t": counted if np.abs(counted - t).max(initial=0.0) < _ROUNDED else t,
-        "rate": hertz,
-        "positions": np.stack([table.values[:, at : at + 3] for at in places], axis=1),
-        "unit": stated.get("Length Units", ""),
-        "unit_place": ("`Length Units`", 1),
-        "up": "y",
-        "doubts": doubts,
-    }
-    source = {"file": file, "format": READER.format, "encoding": text.encoding}
-    names = [padded[named][at] for at in places]
-    if kind == "Marker":
-        return marker_data(source, labels=names, **rows)
-    order = stated.get("Rotation Type", "Quaternion").upper()
-    count = 4 if order == "QUATERNION" else 3
-    if count == 3 and sorted(order) != [*"XYZ"]:
-        refuse(file, f"Read the Rotation Type {shown(order)}. Expected Quaternion or XYZ.", 1)
-    turned = np.stack([table.values[:, at : at + count] for at in turns], axis=1)
-    turned = turned if count == 4 else np.radians(turned)
-    return body_data(source, names=names, rotations=matrices(turned, order), **rows)
+    turned = None
+    if kind == "Rigid Body":
+        order = stated.get("Rotation Type", "Quaternion").upper()
+        count = 4 if order == "QUATERNION" else 3
+        if count == 3 and sorted(order) != [*"XYZ"]:
+            refuse(file, f"Read the Rotation Type {shown(order)}. Expected Quaternion or XYZ.", 1)
+        turned = np.stack([table.values[:, at : at + count] for at in turns], axis=1)
+        turned = matrices(turned if count == 4 else np.radians(turned), order)
+    return marker_data(
+        {"file": file, "format": READER.format, "encoding": text.encoding},
+        frame=frame,
+        lines=table.lines,
+        t=counted if np.abs(counted - t).max(initial=0.0) < _ROUNDED else t,
+        rate=hertz,
+        labels=[padded[named][at] for at in places],
+        positions=np.stack([table.values[:, at : at + 3] for at in places], axis=1),
+        rotations=turned,
+        unit=stated.get("Length Units", ""),
+        unit_place=("`Length Units`", 1),
+        up="y",
+        doubts=doubts,
+    )
 
 
 READER = Reader("OptiTrack Motive CSV", sniff, read)

@@ -26,67 +26,58 @@ from rr_opt.recordings.readers.text import (
     find_header,
     read_table,
 )
-from rr_opt.recordings.time_axis import Order, in_order, rate_of, time_notices
+from rr_opt.recordings.time_axis import in_order, rate_of, time_notices
 from rr_opt.recordings.warnings import Notice, notice
 from rr_opt.units import to_si
 
 
-@dataclass(frozen=True)
-class Columns:
-    """The known columns of a table, its rows in the order of their times.
-
-    t       (n,), s; values (n, k), of the channels `names`, NaN where a cell is empty
-    rate    rows per second, Hz
-    order   of the rows
-    source  where they come from, plain text by name
-    """
-
-    t: Array
-    values: Array
-    names: tuple[str, ...]
-    rate: float
-    order: Order
-    source: Mapping[str, str]
-    doubts: tuple[Notice, ...]
-
-
 def read_columns(
-    text: Text, needed: Sequence[str], known: Sequence[str], columns: Mapping[str, Column]
-) -> Columns:
-    """The columns `t` and those known that a text file with a header row has.
+    text: Text, needed: Sequence[str], known: Sequence[str], options: ReadOptions
+) -> Recording:
+    """The known channels that a text file with a header row has, over its column `t`.
 
-    columns: where a channel is that goes by another name. A name may have its unit in brackets.
-    Raises InvalidFileError with every column that is needed and missing, or there twice, and for
-    every cell that is not a number.
+    A name may have its unit in brackets. An empty cell, NaN or infinity is flagged MISSING, a row
+    that stood in another place than its time OUT_OF_ORDER, and so is the first of rows that share
+    a time and say different things. Raises InvalidFileError with every column that is needed and
+    missing, or there twice, and for every cell that is not a number.
     """
     header = find_header(text)
     if header is None:
         expected = f"`{','.join(needed)}`"
         refuse(text.file, f"The file has no rows. Expected {expected}. Export it again.")
-    header, units = _renamed(header, columns, known)
-    _check(header, needed, known, columns, text.file)
+    header, units = _renamed(header, options.columns, known)
+    _check(header, needed, known, options.columns, text.file)
     table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
     doubts = list(table.doubts)
     others = [one for one in header.names if one not in known]
     if others:
         doubts.append(notice("file.columns", names=shown(", ".join(others))))
-    names = [one for one in known if one in header.names]
-    values = table.values[:, [header.names.index(one) for one in names]]
-    for at, name in enumerate(names):
-        column = columns.get(name, Column(name))
+    values: dict[str, Array] = {}
+    for name in (one for one in known if one in header.names):
+        column = options.columns.get(name, Column(name))
         if name in units and column.factor == 1:
             column = replace(column, factor=_factor(units[name], name, header, text.file))
-        values[:, at], notices = _converted(values[:, at], column)
+        read = table.values[:, header.names.index(name)]
+        values[name], notices = converted(read, column)
         doubts += notices
-    t, values = values[:, names.index("t")], np.delete(values, names.index("t"), axis=1)
-    order = in_order(t, values, table.lines)
-    t, values = t[order.rows], values[order.rows]
+    t = values.pop("t")
+    order = in_order(t, np.column_stack([*values.values()]), table.lines)
+    t, values = t[order.rows], {name: one[order.rows] for name, one in values.items()}
     rate = rate_of(t, text.file, header.at + 1)
-    source = {"file": text.file, "encoding": text.encoding, "rate": f"{rate:.6g} Hz"}
-    return Columns(
-        t, values, tuple(one for one in names if one != "t"), rate, order, source,
+    apart = np.uint8(Flag.OUT_OF_ORDER) * (order.moved | order.unsure)
+    noise = options.noise
+    sigma = {one: noise.of(one) if noise else np.nan for one in values}
+    return Recording(
+        Path(text.file).name,
+        t,
+        MappingProxyType(values),
+        MappingProxyType({one: np.full(len(t), size) for one, size in sigma.items()}),
+        MappingProxyType(
+            {name: np.uint8(Flag.MISSING) * np.isnan(one) | apart for name, one in values.items()}
+        ),
+        {"file": text.file, "encoding": text.encoding, "rate": f"{rate:.6g} Hz"},
         (*doubts, *order.doubts, *time_notices(t, rate)),
-    )  # fmt: skip
+    )
 
 
 def column_names(text: Text, columns: Mapping[str, Column], known: Sequence[str]) -> set[str]:
@@ -130,7 +121,7 @@ def _factor(unit: str, channel: str, header: Header, file: str) -> float:
         refuse(file, f"The unit of `{channel}`: {error}", header.at + 1)
 
 
-def _converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
+def converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
     """Counts with their sign, and in SI."""
     notices = []
     if column.bits:
@@ -165,20 +156,18 @@ def _check(
         wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
     if missing:
         others = [_WITH_UNIT.sub(r"\1", name) for name in header.names if name not in known]
-        meant_by = guesses(others, missing)
         advice = "Add what is missing."
-        if meant_by:
-            given = {name: one for name, one in columns.items() if name in header.names}
-            meant = given | {
-                name: Column(column, unit=_unit_in(column, name))
-                for name, column in meant_by.items()
-            }
+        if guessed := guesses(others, missing):
+            meant = {name: Column(one, unit=_unit_in(one, name)) for name, one in guessed.items()}
+            meant |= {name: one for name, one in columns.items() if name in header.names}
             named = [(name, meant[name]) for name in known if name in meant]
             entries = ", ".join(f"{name}: {_entry(one)}" for name, one in named)
             advice = f"Rename them, or write `columns: {{{entries}}}` in the experiment file"
             if all(one.unit or (one.factor == 1 and not one.bits) for _, one in named):
-                units = {name: f" [{one.unit}]" if one.unit else "" for name, one in named}
-                options = ",".join(f"{name}={one.column}{units[name]}" for name, one in named)
+                options = ",".join(
+                    f"{name}={one.column}" + (f" [{one.unit}]" if one.unit else "")
+                    for name, one in named
+                )
                 advice += f', or --columns "{options}" for one recording'
             advice += "."
         # A letter alone is like no other: the columns that there are say more.
@@ -268,27 +257,11 @@ def is_motion(text: Text, options: ReadOptions) -> bool:
     return "t" in names or len(names & set(CHANNELS)) > 1 or len(guesses(names, _NEEDED)) > 2
 
 
-def read_motion(file: str, text: Text, options: ReadOptions) -> Recording:
-    """The recording of a plain CSV; columns in any order; unknown ones are reported.
-
-    An empty cell, NaN or infinity is flagged MISSING, a row that stood in another place than its
-    time OUT_OF_ORDER, and so is the first of rows that share a time and say different things.
-    """
-    found = read_columns(text, _NEEDED, _KNOWN, options.columns)
-    flags = np.where(np.isnan(found.values), Flag.MISSING, 0).astype(np.uint8)
-    flags[found.order.moved | found.order.unsure] |= np.uint8(Flag.OUT_OF_ORDER)
-    noise = options.noise
-    sigma = {one: noise.of(one) if noise else np.nan for one in found.names}
+def read_motion(_: str, text: Text, options: ReadOptions) -> Recording:
+    """The recording of a plain CSV; columns in any order; unknown ones are reported."""
+    found = read_columns(text, _NEEDED, _KNOWN, options)
     source = {**found.source, "format": "plain CSV", "clock": "the recording's own t"}
-    return Recording(
-        Path(file).name,
-        found.t,
-        MappingProxyType(dict(zip(found.names, found.values.T.copy(), strict=True))),
-        MappingProxyType({one: np.full(len(found.t), size) for one, size in sigma.items()}),
-        MappingProxyType(dict(zip(found.names, flags.T.copy(), strict=True))),
-        MappingProxyType(source),
-        found.doubts,
-    )
+    return replace(found, source=MappingProxyType(source))
 
 
 MOTION = Reader("plain CSV", is_motion, read_motion)
@@ -343,14 +316,12 @@ def read_log(file: str, text: Text, options: ReadOptions) -> ServoLog:
     known = ("t", *_POSITIONS)
     names = column_names(text, options.columns, known)
     needed = ("t", *([one for one in _POSITIONS if one in names] or _POSITIONS))
-    found = read_columns(text, needed, known, options.columns)
-    values = found.values
-    values[found.order.moved | found.order.unsure] = np.nan
+    found = read_columns(text, needed, known, replace(options, noise=None))
+    counts = {one: found.data(one) for one in found.channels}
     doubts = found.doubts
-    outside = (values < 0) | (values >= scale.counts)
-    if outside.any():
-        doubts += (notice("servo.counts", count=outside.sum(), last=scale.counts - 1),)
-    counts = dict(zip(found.names, values.T.copy(), strict=True))
+    outside = sum(((one < 0) | (one >= scale.counts)).sum() for one in counts.values())
+    if outside:
+        doubts += (notice("servo.counts", count=outside, last=scale.counts - 1),)
     angles = {one: (read - scale.zero) * scale.each for one, read in counts.items()}
     source = {
         **found.source,
@@ -360,14 +331,14 @@ def read_log(file: str, text: Text, options: ReadOptions) -> ServoLog:
         f"phi = 0 at {scale.zero:g}",
     }
     return ServoLog(
-        name=Path(file).name,
+        name=found.name,
         t=found.t,
         goal=counts.get("goal"),
         present=counts.get("present"),
         goal_angle=angles.get("goal"),
         present_angle=angles.get("present"),
         resolution=abs(scale.each),
-        rate=found.rate,
+        rate=rate_of(found.t, file),
         source=MappingProxyType(source),
         doubts=doubts,
     )

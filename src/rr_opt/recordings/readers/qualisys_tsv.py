@@ -5,15 +5,12 @@ the rotation matrix, column by column. The row `Frame`, `Time`, ... and these tw
 there if the export was set to write them; else frames come at `FREQUENCY`.
 """
 
-from typing import Any
-
 import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import (
     MarkerData,
-    body_data,
     count_notice,
     frames_of,
     marker_data,
@@ -60,22 +57,24 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
         else np.arange(1, len(table.values) + 1)
     )
     values = table.values[:, 2 * timed :].reshape(len(frame), len(names), len(parts))
-    source = {"file": file, "format": READER.format, "encoding": text.encoding}
-    rows: dict[str, Any] = {
-        "frame": frame,
-        "lines": table.lines,
-        "t": table.values[:, 1] if timed else None,
-        "rate": rate_in("".join(stated.get("FREQUENCY", [])), "as FREQUENCY", file),
-        "unit": "mm",
-        "unit_place": ("the export", None),
-        "doubts": [*table.doubts, *count_notice("".join(stated.get("NO_OF_FRAMES", [])), frame)],
-    }
-    if not bodies:
-        return marker_data(source, labels=names, positions=values, **rows)
-    turned = np.swapaxes(values[..., 7:].reshape(len(frame), len(names), 3, 3), 2, 3)
-    # A body that was not seen has zeros all over.
-    turned[np.abs(np.linalg.det(np.nan_to_num(turned)) - 1) > _RIGID] = np.nan
-    return body_data(source, names=names, positions=values[..., :3], rotations=turned, **rows)
+    turned = None
+    if bodies:
+        turned = np.swapaxes(values[..., 7:].reshape(len(frame), len(names), 3, 3), 2, 3)
+        # A body that was not seen has zeros all over.
+        turned[np.abs(np.linalg.det(np.nan_to_num(turned)) - 1) > _RIGID] = np.nan
+    return marker_data(
+        {"file": file, "format": READER.format, "encoding": text.encoding},
+        frame=frame,
+        lines=table.lines,
+        t=table.values[:, 1] if timed else None,
+        rate=rate_in("".join(stated.get("FREQUENCY", [])), "as FREQUENCY", file),
+        labels=names,
+        positions=values[..., :3],
+        rotations=turned,
+        unit="mm",
+        unit_place=("the export", None),
+        doubts=[*table.doubts, *count_notice("".join(stated.get("NO_OF_FRAMES", [])), frame)],
+    )
 
 
 _BODY = ["X", "Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{n}]" for n in range(9))]

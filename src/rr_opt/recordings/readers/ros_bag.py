@@ -17,7 +17,7 @@ from rr_opt.array import Array
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
-from rr_opt.recordings.readers.marker_rows import MarkerData, body_data, matrices
+from rr_opt.recordings.readers.marker_rows import MarkerData, marker_data, matrices
 from rr_opt.recordings.readers.plain_csv import ServoLog
 from rr_opt.recordings.readers.text import Reader, ReadOptions
 from rr_opt.recordings.time_axis import LACKING, in_order, rate_of, time_step
@@ -127,9 +127,9 @@ def _poses(file: str, poses: dict[str, list[Any]]) -> MarkerData:
     if moved:
         doubts = (*doubts, notice("bodies.apart", names=shown(", ".join(moved))))
     frame = np.arange(1, len(t) + 1)
-    return body_data(
+    return marker_data(
         {"file": file, "format": READER.format},
-        names=list(bodies),
+        labels=list(bodies),
         positions=np.stack(positions, 1),
         rotations=np.stack(rotations, 1),
         unit="m",

@@ -9,7 +9,6 @@ five lines of header: its title; its rate, Hz; the names, each above the first o
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,6 @@ from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import (
     MarkerData,
-    body_data,
     frames_of,
     marker_data,
     matrices,
@@ -133,27 +131,32 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
         )
     head = read_head(text, start)
     last = _end(text, head.first_row, head.separator)
-    names = [f"{role} of {marker}" if marker else role for role, marker in _owners(head)]
+    owner = {
+        at + axis: f" of {one}" for one, at in head.markers if one for axis in range(-head.turn, 3)
+    }
+    names = [f"{role}{owner.get(at, '')}" for at, role in enumerate(head.roles)]
     table = read_table(text, head.first_row, last, head.separator, names)
     labels = [marker for marker, _ in head.markers]
-    source = {"file": file, "format": READER.format, "encoding": text.encoding}
-    rows: dict[str, Any] = {
-        "frame": frames_of(table, head.roles.index("frame"), file, head.first_row),
-        "lines": table.lines,
-        "t": None,
-        "rate": head.rate,
-        "positions": np.stack([table.values[:, at : at + 3] for _, at in head.markers], axis=1),
-        "unit": head.unit,
-        "unit_place": ("the row of units", head.first_row),
-        "doubts": [*table.doubts, *_unread(text, start, last, head)],
-    }
-    if not head.turn:
-        return marker_data(source, labels=labels, **rows)
-    turned = np.stack([table.values[:, at - head.turn : at] for _, at in head.markers], axis=1)
-    turned = matrices(turned if head.turn == 4 else head.angle * turned, "vector")
-    short = [label.rpartition(":")[2] for label in labels]  # `Subject:Segment`
-    names = short if len(set(short)) == len(short) else labels
-    return body_data(source, names=names, rotations=turned, **rows)
+    frame = frames_of(table, head.roles.index("frame"), file, head.first_row)
+    turned = None
+    if head.turn:
+        turned = np.stack([table.values[:, at - head.turn : at] for _, at in head.markers], axis=1)
+        turned = matrices(turned if head.turn == 4 else head.angle * turned, "vector")
+        short = [label.rpartition(":")[2] for label in labels]  # `Subject:Segment`
+        labels = short if len(set(short)) == len(short) else labels
+    return marker_data(
+        {"file": file, "format": READER.format, "encoding": text.encoding},
+        frame=frame,
+        lines=table.lines,
+        t=None,
+        rate=head.rate,
+        labels=labels,
+        positions=np.stack([table.values[:, at : at + 3] for _, at in head.markers], axis=1),
+        rotations=turned,
+        unit=head.unit,
+        unit_place=("the row of units", head.first_row),
+        doubts=[*table.doubts, *_unread(text, start, last, head)],
+    )
 
 
 def _title(line: str) -> str:
@@ -179,12 +182,6 @@ def _end(text: Text, first: int, separator: str) -> int:
         if not line[:1].isdigit() and (not line.strip(blank) or _title(line) in _SECTIONS):
             return at
     return len(text.lines)
-
-
-def _owners(head: Head) -> list[tuple[str, str]]:
-    """Each column's role and the marker it belongs to, for messages."""
-    owner = {at + axis: marker for marker, at in head.markers for axis in range(-head.turn, 3)}
-    return [(role, owner.get(at, "")) for at, role in enumerate(head.roles)]
 
 
 def _unread(text: Text, start: int, last: int, head: Head) -> Iterator[Notice]:
