@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any, Literal, TypeVar
 
+from numpy.typing import NDArray
+
 from rr_opt.formatting import number
 from rr_opt.version import __version__
 
@@ -99,6 +101,11 @@ def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 
     return text.getvalue()
 
 
+def csv_columns(names: Sequence[str], columns: Iterable[NDArray[Any]], digits: int = 9) -> str:
+    """Columns of numbers as CSV, like `csv_text`."""
+    return csv_text(names, zip(*(column.tolist() for column in columns), strict=True), digits)
+
+
 def heading(name: str, unit: str) -> str:
     """The heading of a column of numbers: `speed [m/s]`; of plain numbers the name alone."""
     return f"{name} [{unit}]" if unit not in ("", "1") else name
@@ -156,6 +163,11 @@ class Facts(Items):
 
     items: tuple[Fact, ...]
     key: bool = False
+
+
+def facts(items: Iterable[Fact], *, key: bool = False) -> Facts:
+    """Facts of any iterable."""
+    return Facts(tuple(items), key)
 
 
 @dataclass(frozen=True)
@@ -241,6 +253,11 @@ class Section:
     brief: bool = True
 
 
+def section(title: str, *blocks: Block, brief: bool = True) -> Section:
+    """A section of these blocks."""
+    return Section(title, blocks, brief)
+
+
 @dataclass(frozen=True)
 class Document:
     """A report.
@@ -282,13 +299,12 @@ def versions(sha256: str) -> tuple[str, str]:
 
 def gallery(figures: Iterable[Figure]) -> Section:
     """Figures as a section of the page; a terminal shows none."""
-    return Section("", (Gallery(tuple(figures)),), brief=False)
+    return section("", Gallery(tuple(figures)), brief=False)
 
 
-def facts_alone(facts: Iterable[Fact], *blocks: Block) -> Document:
+def facts_alone(items: Iterable[Fact], *blocks: Block) -> Document:
     """A report for a terminal only."""
-    sections = (Section("", (Facts(tuple(facts)),)), *(Section("", (one,)) for one in blocks))
-    return Document("", "", "", "", sections)
+    return Document("", "", "", "", tuple(section("", one) for one in (facts(items), *blocks)))
 
 
 @dataclass(frozen=True)

@@ -124,14 +124,6 @@ def _marked_table(block: doc.Table) -> str:
 
 PAGE = "report.html"
 
-_KINDS = {
-    doc.Facts: "facts",
-    doc.Table: "table",
-    doc.Checks: "checks",
-    doc.Chain: "chain",
-    doc.Gallery: "gallery",
-}
-
 
 def page(document: doc.Document) -> str:
     """The whole page; all text is escaped."""
@@ -154,7 +146,7 @@ def _template() -> Template:
         "code": _code,
         "cell_text": doc.cell_text,
         "data_uri": lambda svg: f"data:image/svg+xml,{quote(svg, safe=_PLAIN)}",
-        "kind": lambda block: _KINDS.get(type(block), "text"),
+        "kind": lambda block: type(block).__name__.lower(),
     }
     environment.tests |= {
         "badge": lambda cell: isinstance(cell, doc.Badge),

@@ -137,8 +137,8 @@ class ExplainedExperiment(Explained[Experiment]):
             lead=found.summary,
             good=found.verdict == "consistent",
             sections=(
-                doc.Section("Where it goes wrong", (chain(self), chain_note(self))),
-                doc.Section("", (doc.Facts(tuple(_key_facts(self)), key=True),)),
+                doc.section("Where it goes wrong", chain(self), chain_note(self)),
+                doc.section("", doc.facts(_key_facts(self), key=True)),
                 doc.gallery(figures),
                 *(doc.Section(title, blocks) for title, blocks in sections.items()),
             ),

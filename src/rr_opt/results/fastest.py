@@ -387,11 +387,12 @@ class FastestGait(Result):
         choice, solved = self.problem.inertia_ratio, self.gait is not None
         chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
         good, objective = self.status is Status.OPTIMAL, self.problem.objective
+        limits, bounds = self.limits.values(), self.bounds.values()
         lead = " ".join(
             [
                 *([] if self.climbed else ["Every check confirms it."]),
                 *self.remarks,
-                limited_by(self.limits.values(), self.bounds.values()) if self.replay else "",
+                limited_by(limits, bounds) if self.replay else "",
             ]
         )
         return doc.Document(
@@ -401,31 +402,23 @@ class FastestGait(Result):
             lead=lead if good else self.message,
             good=good,
             sections=(
-                doc.Section("", (doc.Facts(tuple(_facts(self)), key=True),)),
+                doc.section("", doc.facts(_facts(self), key=True)),
                 self._lead(),
-                self.robust.section() if self.robust else doc.Section("", ()),
-                doc.Section(
-                    "Checks", (doc.checks((one.passed, one.sentence) for one in self.checks),)
-                ),
+                self.robust.section() if self.robust else doc.section(""),
+                doc.section("Checks", doc.checks(self.checks)),
                 doc.gallery(figures),
-                doc.Section(
-                    "Limits",
-                    (limits_table(self.limits.values(), reached=solved, objective=objective),),
-                    brief=solved,
-                ),
-                doc.Section(
-                    "Decisions and their bounds", (bounds_table(self.bounds.values(), objective),)
-                ),
-                doc.Section("Local optima", (_optima(self),)),
-                doc.Section("Robot", (robot_table(self.robot, chosen),), brief=False),
-                doc.Section("Solver", (_solver(self),), brief=solved),
+                doc.section("Limits", limits_table(limits, solved, objective), brief=solved),
+                doc.section("Decisions and their bounds", bounds_table(bounds, objective)),
+                doc.section("Local optima", _optima(self)),
+                doc.section("Robot", robot_table(self.robot, chosen), brief=False),
+                doc.section("Solver", _solver(self), brief=solved),
             ),
             footer=doc.versions(self.sha256),
         )
 
     def _lead(self) -> doc.Section:
         """The content before the checks."""
-        return doc.Section("", ())
+        return doc.section("")
 
     def _tables(self) -> dict[str, str]:
         """The cycle as CSV; nothing without a gait."""

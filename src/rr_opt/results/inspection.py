@@ -73,13 +73,12 @@ class InspectedRecordings(Result):
         found = self.recordings
         several, count = len(found) > 1, sum(len(one.doubts) for one in found)
         what = f"{len(found)} recordings" if several else "A recording"
-        sections = [doc.Section("Recordings", (_table(found),), brief=False)] if several else []
+        sections = [doc.section("Recordings", _table(found), brief=False)] if several else []
         for one in found:
-            doubts = doc.warnings(one.doubts) if one.doubts else "No warnings."
             stem = PurePath(one.name).stem
             own = (f for f in figures if not several or f.name.rpartition("-")[0] == stem)
-            sections.append(doc.Section(one.name, (doc.Facts(tuple(_facts(one))), doubts)))
-            sections.append(doc.gallery(own))
+            facts = doc.facts(_facts(one))
+            sections += [doc.section(one.name, facts, _warnings(one.doubts)), doc.gallery(own)]
         dropped = "Nothing was filled in or dropped."
         return _report(self.name, self.sha256, what, count, dropped, sections)
 
@@ -91,6 +90,10 @@ def _named(figures: Iterable[doc.Figure], recording: str) -> list[doc.Figure]:
         replace(one, name=f"{stem}-{one.name}", title=f"{recording}: {one.title}")
         for one in figures
     ]
+
+
+def _warnings(doubts: Sequence[str]) -> doc.Block:
+    return doc.warnings(doubts) if doubts else "No warnings."
 
 
 def _report(
@@ -388,7 +391,7 @@ class InspectedMachine(Result):
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """Every recording with its channels and warnings."""
         experiment, count = self.experiment, len(self.warnings)
-        sections = [doc.Section(run.name, tuple(self._blocks(run))) for run in experiment.runs]
+        sections = [doc.section(run.name, *self._blocks(run)) for run in experiment.runs]
         what = f"{counted(len(experiment.runs), 'recording')} of {experiment.machine.words}"
         sections.append(doc.gallery(figures))
         dropped = "Outliers were dropped."
@@ -411,7 +414,7 @@ class InspectedMachine(Result):
                 "Missing": lambda c: str(int(np.isnan(data[c.name]).sum())),
             },
         )
-        return [facts, channels, doc.warnings(run.doubts) if run.doubts else "No warnings."]
+        return [facts, channels, _warnings(run.doubts)]
 
 
 def _data(run: MachineRun) -> Mapping[str, np.ndarray]:

@@ -187,7 +187,6 @@ def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:
 
 def limits_table(
     rows: Iterable[LimitRow],
-    *,
     reached: bool,
     objective: str = "speed",
     where: Mapping[str, str] | None = None,

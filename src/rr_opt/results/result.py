@@ -1,10 +1,9 @@
 """What every result can do: report its status, and be printed, drawn and saved."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from rr_opt.documents.archive import folder_for_results, remove, write_json, write_text
 from rr_opt.documents.document import Captions, Document, Figure, captioned
@@ -52,8 +51,7 @@ def picked(source: Any, names: str) -> dict[str, Any]:
     return {name: getattr(source, name) for name in names.split()}
 
 
-@dataclass(frozen=True)
-class Check:
+class Check(NamedTuple):
     """One check of a result: whether it passed, and its finding in a sentence."""
 
     passed: bool

@@ -1,6 +1,7 @@
 """The gait that is fast across the robot's uncertainty, beside the nominal optimum."""
 
 from dataclasses import dataclass, replace
+from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -84,7 +85,7 @@ class Robust:
             ("95 % reach", f"{1e3 * self.speed:+.2f} mm/s"),
             ("nominal", f"{1e3 * self.nominal:+.2f} mm/s"),
         ]
-        return doc.Section("Robust gait", (doc.Facts(tuple(doc.Fact(*row) for row in rows)),))
+        return doc.section("Robust gait", doc.facts(starmap(doc.Fact, rows)))
 
     def record(self) -> dict[str, Any]:
         """As plain data."""

@@ -201,18 +201,8 @@ class DrivenRoute(Result):
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The report."""
-        sections = [doc.Section("", (doc.Facts(tuple(_facts(self))),))]
-        if self.plan.legs:
-            sections.append(doc.Section("Path", (_legs(self),)))
-        if self.limits:
-            where = {
-                name: f"piece {row.piece}, {row.time:.2f} s" for name, row in self.limits.items()
-            }
-            rows = limits_table(self.limits.values(), reached=True, objective="time", where=where)
-            sections.append(doc.Section("Limits", (rows,)))
-        if self.checks:
-            checks = doc.checks((check.passed, check.sentence) for check in self.checks)
-            sections.append(doc.Section("Checks", (checks,)))
+        limits = self.limits
+        where = {name: f"piece {row.piece}, {row.time:.2f} s" for name, row in limits.items()}
         good = self.status is Status.OPTIMAL
         title = self.message.removesuffix(".") if good else f"No drive: {self.status.words}"
         return doc.Document(
@@ -220,7 +210,13 @@ class DrivenRoute(Result):
             "route",
             title,
             "" if good else self.message,
-            (*sections, doc.gallery(figures)),
+            (
+                doc.section("", doc.facts(_facts(self))),
+                doc.section("Path", _legs(self)),
+                doc.section("Limits", limits_table(limits.values(), True, "time", where)),
+                doc.section("Checks", doc.checks(self.checks)),
+                doc.gallery(figures),
+            ),
             good=good,
             footer=doc.versions(self.sha256),
         )
@@ -257,10 +253,8 @@ class DrivenRoute(Result):
         t = np.arange(math.ceil(command.seconds * _RATE) + 1) / _RATE
         phi = command.angle(np.minimum(t, command.seconds))
         counts = np.round(CENTRE + phi / COUNT).astype(int)
-        columns = (t.tolist(), phi.tolist(), np.degrees(phi).tolist(), counts.tolist())
-        tables["setpoints.csv"] = doc.csv_text(
-            ("t [s]", "phi [rad]", "phi [deg]", "count"), zip(*columns, strict=True)
-        )
+        head = ("t [s]", "phi [rad]", "phi [deg]", "count")
+        tables["setpoints.csv"] = doc.csv_columns(head, (t, phi, np.degrees(phi), counts))
         if self.feedback:
             tables["feedback.json"] = strict_json(plain(self.feedback))
             tables["feedback.c"] = c_text(self.feedback)

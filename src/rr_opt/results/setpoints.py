@@ -93,12 +93,11 @@ def text_of(points: SetPoints, format: Format) -> str:
 
     Raises InputError for an angle beyond the servo's counts.
     """
-    times = (np.arange(len(points.angles)) / points.rate).tolist()
+    t, phi = np.arange(len(points.angles)) / points.rate, points.angles
     if format == "csv":
-        angles = points.angles.tolist(), np.degrees(points.angles).tolist()
-        return doc.csv_text(("t [s]", "phi [rad]", "phi [deg]"), zip(times, *angles, strict=True))
+        return doc.csv_columns(("t [s]", "phi [rad]", "phi [deg]"), (t, phi, np.degrees(phi)))
     if format == "servo":
-        return doc.csv_text(("t [s]", "count"), zip(times, points.counts.tolist(), strict=True))
+        return doc.csv_columns(("t [s]", "count"), (t, points.counts))
     return _c_header(points)
 
 

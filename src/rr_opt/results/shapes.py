@@ -124,9 +124,9 @@ class FastestShapes(Result):
             good=self.status is Status.OPTIMAL,
             sections=(
                 doc.gallery(figures),
-                doc.Section("Families", (_families(self),)),
-                doc.Section("Checks", (count,)),
-                doc.Section("", (every,), brief=False),
+                doc.section("Families", _families(self)),
+                doc.section("Checks", count),
+                doc.section("", every, brief=False),
             ),
             footer=doc.versions(self.sha256),
         )

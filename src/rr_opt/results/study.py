@@ -248,6 +248,7 @@ class SolvedStudy(_Study):
             span = f"{np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
             title = f"The best speed of {cases} cases ranges from {span}"
         shown = min(cases, _MOST_ROWS)
+        shown_cases = "All cases" if shown == cases else f"The first {shown} cases"
         return doc.Document(
             name=self.study.name,
             kind="study",
@@ -255,16 +256,12 @@ class SolvedStudy(_Study):
             lead=" ".join([self.message, *self.warnings]),
             good=good,
             sections=(
-                doc.Section("", (doc.Facts(_key_facts(self), key=True),), brief=False),
-                doc.Section("", (doc.Facts(tuple(_facts(self))),)),
+                doc.section("", doc.Facts(_key_facts(self), key=True), brief=False),
+                doc.section("", doc.facts(_facts(self))),
                 doc.gallery(figures),
-                doc.Section("Fastest for their cost", (_front_table(self),), brief=False),
-                doc.Section("Cases without an optimum", (_failures(self),), brief=False),
-                doc.Section(
-                    "All cases" if shown == cases else f"The first {shown} cases",
-                    (_cases_table(self, range(shown)),),
-                    brief=False,
-                ),
+                doc.section("Fastest for their cost", _front_table(self), brief=False),
+                doc.section("Cases without an optimum", _failures(self), brief=False),
+                doc.section(shown_cases, _cases_table(self, range(shown)), brief=False),
             ),
             footer=(
                 "Each optimum was checked against its limits and a fine simulation; `rr-opt "
@@ -420,7 +417,7 @@ class DrivenRoutes(_Study):
             title=self.message.removesuffix("."),
             lead=" ".join(self.warnings),
             good=self.status is Status.OPTIMAL,
-            sections=(doc.Section("Routes", (table,)), doc.gallery(figures)),
+            sections=(doc.section("Routes", table), doc.gallery(figures)),
             footer=doc.versions(self.sha256),
         )
 

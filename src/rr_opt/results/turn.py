@@ -121,8 +121,7 @@ class FastestTurn(FastestGait):
         return replace(super().document(figures), kind="fastest turn")
 
     def _lead(self) -> doc.Section:
-        facts = tuple(_facts(self, self.arc)) if self.arc else ()
-        return doc.Section("Turn", (doc.Facts(facts),))
+        return doc.section("Turn", doc.facts(_facts(self, self.arc) if self.arc else ()))
 
 
 def _circle_checks(circle: CircleCheck) -> list[Check]:
@@ -270,8 +269,7 @@ class TurnChart(Result):
             np.concatenate([there[..., left], here], axis=-1).ravel() + 0
             for here, there in zip(parts, mirror, strict=True)
         ]
-        rows = zip(*(part.tolist() for part in both), strict=True)
-        return {"turn-chart.csv": doc.csv_text(COLUMNS, rows)}
+        return {"turn-chart.csv": doc.csv_columns(COLUMNS, both)}
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The tightest circle, and the paper's claim on the offset."""
@@ -281,11 +279,9 @@ class TurnChart(Result):
             circle = f"{with_unit(tight.radius, 'm')} by {sine_text(tight.gait)}"
             tightest = doc.Facts((doc.Fact("tightest", circle), speed_fact(tight.speed)))
             facts = (
-                doc.Section("", (tightest,)),
-                doc.Section("The sign of the offset sets the side", (_sign_facts(self.sign),)),
-                doc.Section(
-                    "A larger offset makes a smaller radius", (_radius_facts(self.radius),)
-                ),
+                doc.section("", tightest),
+                doc.section("The sign of the offset sets the side", _sign_facts(self.sign)),
+                doc.section("A larger offset makes a smaller radius", _radius_facts(self.radius)),
             )
         return doc.Document(
             self.name,
