@@ -31,7 +31,7 @@ class FastestTurn(FastestGait):
     circle   whether the robot stays on the circle, and converges to it from rest; None likewise
     """
 
-    DRAW = "rr_opt.results.figures.turn.draw_turn"
+    DRAW = "rr_opt.results.figures.fastest.draw_turn"
     CAPTIONS: ClassVar = {**FastestGait.CAPTIONS, **doc.captions("turn")}
 
     target: Target = field(default_factory=Target)
@@ -199,7 +199,7 @@ class TurnChart(Result):
 
     FILE = "turn-chart.json"
     OTHERS = ("turn-chart.csv",)
-    DRAW = "rr_opt.results.figures.turn.draw_chart"
+    DRAW = "rr_opt.results.figures.fastest.draw_chart"
     CAPTIONS = doc.captions("turn chart")
 
     name: str
