@@ -224,12 +224,16 @@ Captions = Mapping[str, tuple[str, str, str]]
 """Title, alternative text and caption of figures by name."""
 
 
-def captioned(captions: Captions, drawn: Mapping[str, str]) -> tuple[Figure, ...]:
-    """The figures that were drawn (SVG texts by name), in the order of the captions."""
+def captioned(captions: Captions, drawn: Mapping[str, str | tuple[str, str]]) -> tuple[Figure, ...]:
+    """The figures that were drawn, in the order of the captions.
+
+    drawn  by name, SVG texts, or pairs of an SVG text and a caption of its own
+    """
+    pairs = {name: (one, "") if isinstance(one, str) else one for name, one in drawn.items()}
     return tuple(
-        Figure(name, title, drawn[name], alt, caption)
+        Figure(name, title, pairs[name][0], alt, pairs[name][1] or caption)
         for name, (title, alt, caption) in captions.items()
-        if name in drawn
+        if name in pairs
     )
 
 

@@ -153,16 +153,6 @@ class ExplainedExperiment(Explained[Experiment]):
         """The verdict, findings with their intervals, misfits before and after, and next steps."""
         return terminal(doc.facts_alone(_summary_facts(self), self.found.summary))
 
-    def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
-        """The figures with their captions."""
-        progress("figures")
-        drawn = self._draw(self)
-        return tuple(
-            doc.Figure(name, title, drawn[name][0], alt, drawn[name][1])
-            for name, (title, alt, _) in self.CAPTIONS.items()
-            if name in drawn
-        )
-
     def _record(self) -> dict[str, Any]:
         return super()._record() | {"loss": loss_record(self.loss), "left_out": self.left_out}
 

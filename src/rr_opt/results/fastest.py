@@ -421,10 +421,8 @@ class FastestGait(Result):
         return doc.section("")
 
     def _tables(self) -> dict[str, str]:
-        """The cycle as CSV; nothing without a gait."""
-        if self.replay is None:
-            return {}
-        return {"trajectory.csv": trajectory_csv(self.replay.steady)}
+        replay = self.replay
+        return {"trajectory.csv": trajectory_csv(replay.steady)} if replay else {}
 
 
 def _within(what: str, error: float, allowed: float) -> Check:

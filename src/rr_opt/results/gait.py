@@ -39,15 +39,13 @@ def _both(name: str, value: float) -> doc.Fact:
     return doc.Fact(name, first, f"({second}")
 
 
-def _harmonics(gait: Gait) -> tuple[doc.Fact, ...]:
+def _harmonics(gait: Gait) -> Iterator[doc.Fact]:
     if not isinstance(gait, FourierGait):
-        return ()
+        return
     least = _NEGLIGIBLE * max(map(abs, gait.sines + gait.cosines))
-    facts = []
     for n, sizes in enumerate(zip(gait.sines, gait.cosines, strict=True), 1):
         sine, cosine = (with_unit(size if abs(size) >= least else 0, "rad") for size in sizes)
-        facts.append(doc.Fact(f"harmonic {n}", f"{sine} of the sine, {cosine} of the cosine"))
-    return tuple(facts)
+        yield doc.Fact(f"harmonic {n}", f"{sine} of the sine, {cosine} of the cosine")
 
 
 def speed_fact(speed: float) -> doc.Fact:

@@ -50,11 +50,10 @@ class InspectedRecordings(Result):
         netcdf: str | Path | None = None,
     ) -> list[Path]:
         """Write inspection.json and the page; netcdf: a file for the one recording."""
-        if netcdf is None:
-            return super().save(path, figures=figures, progress=progress)
-        file_for_result(Path(netcdf))
+        if netcdf is not None:
+            file_for_result(Path(netcdf))
         written = super().save(path, figures=figures, progress=progress)
-        return [*written, _netcdf(Path(netcdf), self.recordings[0])]
+        return written if netcdf is None else [*written, _netcdf(Path(netcdf), self.recordings[0])]
 
     def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """Figures; for several recordings, each name begins with the file's."""
@@ -169,44 +168,35 @@ def _phi_text(found: Inspection) -> str:
 
 
 def _noise_text(found: Inspection, channel: str) -> str:
-    noise = found.cleaned.noise[channel]
-    if not math.isfinite(noise.sigma):
-        return f"{channel} ?"
-    return f"{channel} {size_text(channel, noise.sigma)}"
+    sigma = found.cleaned.noise[channel].sigma
+    return f"{channel} {size_text(channel, sigma) if math.isfinite(sigma) else '?'}"
 
 
 def _flagged_text(found: Inspection) -> str:
     """How many samples of which channels are excluded, and why."""
-    recording = found.recording
     texts = []
-    for channel in recording.channels:
-        flags = recording.flags[channel]
-        counts = [
-            f"{int((flags & flag > 0).sum())} {str(flag.name).lower().replace('_', ' ')}"
-            for flag in Flag
-            if (flags & flag).any()
-        ]
-        if counts:
-            texts.append(f"{channel}: {', '.join(counts)}")
+    for channel in found.recording.channels:
+        flags = found.recording.flags[channel]
+        counts = ((int((flags & flag > 0).sum()), flag) for flag in Flag)
+        words = [f"{n} {str(flag.name).lower().replace('_', ' ')}" for n, flag in counts if n]
+        if words:
+            texts.append(f"{channel}: {', '.join(words)}")
     return "; ".join(texts) or "nothing"
 
 
 def _table(found: Sequence[Inspection]) -> doc.Table:
-    head = ["Recording", "Samples", "Length", "Noise of x", "Noise of phi", "Warnings"]
-    rows = []
-    for one in found:
-        noise, t, count = one.cleaned.noise, one.recording.t, len(one.doubts)
-        rows.append(
-            [
-                one.name,
-                str(len(t)),
-                f"{t[-1] - t[0]:.4g} s",
-                size_text("x", noise["x"].sigma),
-                size_text("phi", noise["phi"].sigma),
-                doc.Badge(str(count), "warn") if count else doc.Badge("none", "good"),
-            ]
-        )
-    return doc.table(head, rows)
+    none = doc.Badge("none", "good")
+    return doc.table_of(
+        found,
+        {
+            "Recording": lambda one: one.name,
+            "Samples": lambda one: str(len(one.recording)),
+            "Length": lambda one: f"{one.recording.t[-1] - one.recording.t[0]:.4g} s",
+            "Noise of x": lambda one: size_text("x", one.cleaned.noise["x"].sigma),
+            "Noise of phi": lambda one: size_text("phi", one.cleaned.noise["phi"].sigma),
+            "Warnings": lambda one: doc.Badge(f"{len(one.doubts)}", "warn") if one.doubts else none,
+        },
+    )
 
 
 def _netcdf(path: Path, found: Inspection) -> Path:

@@ -13,7 +13,7 @@ import numpy as np
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
 from rr_opt.files.record import plain
-from rr_opt.formatting import number, with_unit
+from rr_opt.formatting import number, side_text, with_unit
 from rr_opt.model.command import Command
 from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.model.robot import Robot
@@ -310,19 +310,13 @@ def _legs(result: DrivenRoute) -> doc.Table:
     rows = []
     plan = result.plan
     for leg, gait, speed in zip(plan.legs, plan.gaits, plan.speeds, strict=True):
-        way = (
-            "straight"
-            if leg.curvature == 0
-            else f"radius {number(1 / abs(leg.curvature))} m, "
-            f"{number(math.degrees(abs(leg.curvature) * leg.length))} deg to the "
-            + ("left" if leg.curvature > 0 else "right")
-        )
-        rows.append(
-            (
-                str(leg.piece + 1), way, leg.length, gait.amplitude, gait.period, gait.offset,
-                1e3 * speed,
-            )
-        )  # fmt: skip
+        way = "straight"
+        if leg.curvature:
+            turn = number(math.degrees(abs(leg.curvature) * leg.length))
+            radius, side = number(1 / abs(leg.curvature)), side_text(leg.curvature)
+            way = f"radius {radius} m, {turn} deg to the {side}"
+        sizes = gait.amplitude, gait.period, gait.offset
+        rows.append((str(leg.piece + 1), way, leg.length, *sizes, 1e3 * speed))
     head = (
         *("piece", "way", "length, m", "amplitude, rad", "period, s", "offset, rad"),
         "steady speed, mm/s",

@@ -56,7 +56,7 @@ class _Study(Result):
 
     @property
     def _statuses(self) -> list[Status]:
-        """Status of each row."""
+        """Of each row."""
         raise NotImplementedError
 
     @property
@@ -385,30 +385,29 @@ class DrivenRoutes(_Study):
     def warnings(self) -> tuple[str, ...]:
         """For each route that could not be driven, why."""
         return tuple(
-            f"{route.name}: {row['message']}"
-            for route, row in zip(self.study.routes, self.rows, strict=True)
+            f"{name}: {row['message']}"
+            for name, row in self._named
             if row["status"] != Status.OPTIMAL.value
         )
 
+    @property
+    def _named(self) -> list[tuple[str, Mapping[str, Any]]]:
+        return [(one.name, row) for one, row in zip(self.study.routes, self.rows, strict=True)]
+
     def _record(self) -> dict[str, Any]:
-        named = zip(self.study.routes, self.rows, strict=True)
-        return super()._record() | {"routes": [{"name": route.name, **row} for route, row in named]}
+        return super()._record() | {"routes": [{"name": name, **row} for name, row in self._named]}
 
     def _tables(self) -> Mapping[str, str]:
         """study.csv, and NAME.json for each driven route, in the format of route.json."""
-        named = list(zip(self.study.routes, self.rows, strict=True))
-        cells = ((route.name, *_cells(row)) for route, row in named)
-        tables = {"study.csv": doc.csv_text(("route", *_HEADINGS), cells)}
-        for route, row in named:
-            if row.get("command"):
-                tables[f"{route.name}.json"] = strict_json(row)
-        return tables
+        cells = ((name, *_cells(row)) for name, row in self._named)
+        records = {f"{n}.json": strict_json(row) for n, row in self._named if row.get("command")}
+        return {"study.csv": doc.csv_text(("route", *_HEADINGS), cells), **records}
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """A table of the routes."""
         rows = (
-            (route.name, doc.Badge(Status(row["status"]).words), *_cells(row)[1:])
-            for route, row in zip(self.study.routes, self.rows, strict=True)
+            (name, doc.Badge(Status(row["status"]).words), *_cells(row)[1:])
+            for name, row in self._named
         )
         table = doc.table(("route", *_HEADINGS), rows)
         return doc.Document(
