@@ -13,7 +13,7 @@ from rr_opt.design.decisions import ballast_interval, with_ballast
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
 from rr_opt.files.record import plain, robot_record
-from rr_opt.formatting import counted, direction_text, number, pace_text, with_unit
+from rr_opt.formatting import QUANTITIES, counted, direction_text, number, pace_text, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio, load_count
 from rr_opt.model.gait import Gait
@@ -23,7 +23,9 @@ from rr_opt.motion.steady_cycle import Cycle, Energy, energy
 from rr_opt.outcome import Status
 from rr_opt.results.gait import gait_facts, robot_table, signed_fact, speed_fact
 from rr_opt.results.limits import (
+    BOUND_NAMES,
     LIMIT_NAMES,
+    TOTAL_NAMES,
     BoundRow,
     LimitRow,
     bound_rows,
@@ -573,18 +575,9 @@ def _solver(result: FastestGait) -> str:
 
 
 UNITS = {
-    "angle": "rad",
-    "rate": "rad/s",
-    "torque": "N m",
-    "singularity": "m",
+    **{name: QUANTITIES[name].unit or "1" for name in (*LIMIT_NAMES, *BOUND_NAMES, *TOTAL_NAMES)},
     "grip": "1, largest side force of an axle over the load on it",
-    "amplitude": "rad",
-    "period": "s",
-    "offset": "rad",
-    "inertia_ratio": "1",
     "power": "W, mean positive power of the servo",
-    "cost_of_transport": "1",
-    "speed": "m/s",
     "speed_as_built": "m/s, of the fastest gait of the robot with its inertia ratio unchanged",
     "dx": "m",
     "dy": "m",

@@ -84,9 +84,6 @@ _SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
 """SI unit -> the unit shown, and how many of it are one SI unit."""
 
 
-_SERVO = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
-
-
 _ORIGINS: dict[str, doc.Tone] = {"measured": "good", "fitted": "note", "assumed": "warn"}
 
 
@@ -113,8 +110,8 @@ def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:
         parameter = PARAMETERS[name]
         unit, factor = _SHOWN.get(parameter.unit, (parameter.unit, 1.0))
         yield ".".join(parameter.key), parameter.words, with_unit(value * factor, unit)
-    for key, name in _SERVO.items():
-        kind = QUANTITIES[name]
+    for name in ("angle", "rate", "torque"):
+        key, kind = f"{name}_limit", QUANTITIES[name]
         yield f"servo.{key}", kind.words, kind.both(getattr(robot.servo, key))
     for use in robot.physics:
         for parameter, value in use.values.items():

@@ -8,7 +8,7 @@ from typing import Any
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
 from rr_opt.files.record import plain
-from rr_opt.formatting import direction_text, number, with_unit
+from rr_opt.formatting import QUANTITIES, direction_text, number, with_unit
 from rr_opt.model.problem import GaitBounds
 from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
@@ -102,7 +102,8 @@ class FastestShapes(Result):
     def _tables(self) -> dict[str, str]:
         """shapes.csv, and the record of each family."""
         rows = [_row(self, one) for one in self.answers]
-        head = [doc.heading(name, _UNITS.get(name, "")) for name in rows[0]]
+        kinds = {name: QUANTITIES.get(name.removeprefix("peak_")) for name in rows[0]}
+        head = [doc.heading(name, kind.unit if kind else "") for name, kind in kinds.items()]
         text = doc.csv_text(head, [list(row.values()) for row in rows], digits=12)
         return {"shapes.csv": text} | {_file(o): strict_json(o.record()) for o in self.answers}
 
@@ -140,17 +141,6 @@ def family(answer: FastestGait) -> str:
 def family_name(gait: GaitBounds) -> str:
     """`sine`, `3 harmonics` or `free`."""
     return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else gait.shape
-
-
-_UNITS = {
-    "speed": "m/s",
-    "amplitude": "rad",
-    "period": "s",
-    "offset": "rad",
-    "peak_angle": "rad",
-    "peak_rate": "rad/s",
-    "peak_torque": "N m",
-}
 
 
 def _row(result: FastestShapes, answer: FastestGait) -> dict[str, Any]:

@@ -1,8 +1,11 @@
 """The figures of a fastest gait and a turn, as SVG text by name, with the price of each limit."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
@@ -24,11 +27,13 @@ from rr_opt.results.limits import BoundRow, LimitRow
 from rr_opt.results.robust import Robust
 from rr_opt.results.shapes import FastestShapes, family
 from rr_opt.results.sweep import Sweep
-from rr_opt.results.turn import FastestTurn, TurnChart
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import SpeedMap
 from rr_opt.verify.sweep import speed_map as evaluated_map
-from rr_opt.verify.turn_chart import TurnMap
+
+if TYPE_CHECKING:
+    from rr_opt.results.turn import FastestTurn, TurnChart
+    from rr_opt.verify.turn_chart import TurnMap
 
 
 def draw(result: FastestGait) -> dict[str, str]:
