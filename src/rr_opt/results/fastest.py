@@ -206,7 +206,10 @@ class FastestGait(Result):
     def checks(self) -> list[Check]:
         """Replay by CVODES, the limits over the whole cycle, the sweep, and the gait driven with
         all effects of the robot."""
-        checks, replay, sweep = list[Check](), self.replay, self.sweep
+        return list(self._checks())
+
+    def _checks(self) -> Iterator[Check]:
+        replay, sweep = self.replay, self.sweep
         if replay:
             allowed = LARGEST_REPLAY_ERROR * replay.allowance
             speed = f"Replay by CVODES: {1e3 * replay.speed:+.3f} mm/s"
@@ -217,10 +220,8 @@ class FastestGait(Result):
                 if excess > 0
                 else "none is exceeded."
             )
-            checks += [
-                _within(speed, replay.error, allowed),
-                Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}"),
-            ]
+            yield _within(speed, replay.error, allowed)
+            yield Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}")
             if self.optimum.best:
                 name, share = worst_slack(self.optimum, self.optimum.best.gait, replay.reached)
                 most = LARGEST_SLACK[self.problem.gait.shape == "sine"]
@@ -228,19 +229,21 @@ class FastestGait(Result):
                     f"Complementary slackness: the price of the {name} times its slack is "
                     f"{share:.1e} of the {self._aim} (tolerance {most:.0e})."
                 )
-                checks.append(Check(share <= most, slackness))
+                yield Check(share <= most, slackness)
         if self.cost and self.energy:
-            checks.append(self._cost_within("of the replay", self.energy.cost_of_transport))
+            yield self._cost_within("of the replay", self.energy.cost_of_transport)
         if sweep:
             better = _sweep_sentence(sweep, self.problem.gait.shape, self.cost)
-            checks.append(Check(sweep.better is None, better))
+            yield Check(sweep.better is None, better)
             if not math.isnan(sweep.error):
                 own = f"The sweep's own model of the optimum: {1e3 * sweep.speed:+.3f} mm/s"
-                checks.append(_within(own, sweep.error, sweep.largest_error))
+                yield _within(own, sweep.error, sweep.largest_error)
             if self.cost:
-                checks.append(self._cost_within("by the sweep's own model", sweep.cost))
-        checks += self.robust.checks if self.robust else []
-        return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
+                yield self._cost_within("by the sweep's own model", sweep.cost)
+        if self.robust:
+            yield self.robust.check
+        if self.driven and self.optimum.best:
+            yield _driven_check(self.driven, self.optimum, self.optimum.best.speed)
 
     def _cost_within(self, whose: str, cost: float) -> Check:
         error = abs(cost / (self.cost or math.nan) - 1)
@@ -436,23 +439,18 @@ LARGEST_DRIVEN_ERROR = 0.01
 too or the gait was not improved further."""
 
 
-def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
+def _driven_check(found: DrivenOptimum, optimum: Optimum, speed: float) -> Check:
     """The commanded gait, driven by the simulation that predicts recordings."""
-    best, seen = optimum.best, found.driven
-    if best is None:
-        return []
-    names = listed(seen.effects)
+    seen, names = found.driven, listed(found.driven.effects)
     if found.beyond and optimum.problem.gait.shape == "sine" and not optimum.problem.turn:
         worst, excess = optimum.problem.limits.worst(seen.reached)
-        return [
-            Check(
-                excess <= LARGEST_EXCESS,
-                f"Driven with {names}: the tightest limit is that on {worst}, exceeded by "
-                f"{max(excess, 0.0):.1e} of its value (tolerance {LARGEST_EXCESS:.0e}).",
-            )
-        ]
+        return Check(
+            excess <= LARGEST_EXCESS,
+            f"Driven with {names}: the tightest limit is that on {worst}, exceeded by "
+            f"{max(excess, 0.0):.1e} of its value (tolerance {LARGEST_EXCESS:.0e}).",
+        )
     own = f"Driven with {names}, the gait above as the command: {1e3 * seen.speed:+.3f} mm/s"
-    return [_within(own, seen.error(best.speed), LARGEST_DRIVEN_ERROR)]
+    return _within(own, seen.error(speed), LARGEST_DRIVEN_ERROR)
 
 
 def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 from rr_opt.documents.archive import folder_for_results, remove, write_json, write_text
-from rr_opt.documents.document import Captions, Document, Figure, captioned
+from rr_opt.documents.document import Captions, Document, Figure, Section, captioned, versions
 from rr_opt.documents.rendering import PAGE, markdown, page, terminal
 from rr_opt.files.record import plain
 from rr_opt.outcome import Status
@@ -109,6 +109,13 @@ class Result:
     def document(self, figures: Sequence[Figure] = ()) -> Document:
         """The result as a report, from which the page and the text are made."""
         return Document("", "", "", "", ())
+
+    def _outcome(self, kind: str, title: str, failure: str, *sections: Section) -> Document:
+        """A report under a title, or under the failure that the message then explains."""
+        name, sha256 = getattr(self, "name", ""), getattr(self, "sha256", "")
+        good = self.status is Status.OPTIMAL
+        head = (title, "") if good else (failure, self.message)
+        return Document(name, kind, *head, sections, good=good, footer=versions(sha256))
 
     def _page(self, document: Document) -> Document:
         """The content of the page, if it is not the document itself."""

@@ -50,17 +50,15 @@ class Robust:
     curves: tuple[tuple[float, ...], tuple[float, ...]]
 
     @property
-    def checks(self) -> list[Check]:
-        """Checks on robots other than those that the speed was computed from."""
+    def check(self) -> Check:
+        """A check on robots other than those that the speed was computed from."""
         share = f"{100 * RELIABLE:g} %"
-        return [
-            Check(
-                min(self.reaching, self.keeping) >= RELIABLE - SHORT,
-                f"{DRAWN} other robots drawn: {100 * self.reaching:.1f} % reach the speed that "
-                f"{share} should reach with the robust gait, and {100 * self.keeping:.1f} % keep "
-                f"the torque limit (tolerance {100 * SHORT:g} %).",
-            )
-        ]
+        return Check(
+            min(self.reaching, self.keeping) >= RELIABLE - SHORT,
+            f"{DRAWN} other robots drawn: {100 * self.reaching:.1f} % reach the speed that "
+            f"{share} should reach with the robust gait, and {100 * self.keeping:.1f} % keep "
+            f"the torque limit (tolerance {100 * SHORT:g} %).",
+        )
 
     def sentence(self, best: float) -> str:
         """The price of certainty; best: the speed of the nominal optimum, m/s."""

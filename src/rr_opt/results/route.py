@@ -109,41 +109,36 @@ class DrivenRoute(Result):
     @property
     def checks(self) -> list[Check]:
         """Checks of the replay: the end, the path, and the limits."""
+        return list(self._checks())
+
+    def _checks(self) -> Iterator[Check]:
         replay, asked = self.replay, self.plan.route.tolerance
         if replay is None:
-            return []
+            return
         worst = self.plan.problem.limits.worst(replay.reached)[0]
         end = replay.position <= asked.position and replay.heading <= asked.heading
-        checks = [
-            Check(
-                end,
-                f"End point by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
-                f"{1e3 * asked.position:.4g}), and the heading is off by "
-                f"{math.degrees(replay.heading):.2f} deg (at most "
-                f"{math.degrees(asked.heading):.4g}).",
-            ),
-            Check(
-                replay.path <= asked.path,
-                f"Path by CVODES: P stays within {1e3 * replay.path:.1f} mm of the path (at most "
-                f"{1e3 * asked.path:.4g}).",
-            ),
-            Check(
-                replay.excess <= LARGEST_EXCESS,
-                "Limits of rate, angle, torque, singularity and grip: "
-                + (
-                    f"{worst} is exceeded by {100 * replay.excess:.2g} %."
-                    if replay.excess > 0
-                    else f"all are kept, the tightest with {-100 * replay.excess:.2f} % to spare."
-                ),
-            ),
-        ]
+        yield Check(
+            end,
+            f"End point by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
+            f"{1e3 * asked.position:.4g}), and the heading is off by "
+            f"{math.degrees(replay.heading):.2f} deg (at most {math.degrees(asked.heading):.4g}).",
+        )
+        yield Check(
+            replay.path <= asked.path,
+            f"Path by CVODES: P stays within {1e3 * replay.path:.1f} mm of the path (at most "
+            f"{1e3 * asked.path:.4g}).",
+        )
+        kept = f"all are kept, the tightest with {-100 * replay.excess:.2f} % to spare."
+        if replay.excess > 0:
+            kept = f"{worst} is exceeded by {100 * replay.excess:.2g} %."
+        limits = f"Limits of rate, angle, torque, singularity and grip: {kept}"
+        yield Check(replay.excess <= LARGEST_EXCESS, limits)
         if self.plan.route.end == "rest":
-            speed = (
+            yield Check(
+                replay.speed <= asked.speed,
                 f"Rest: the robot is slower than {1e3 * asked.speed:.4g} mm/s at the end "
-                f"({1e3 * replay.speed:.2f})."
+                f"({1e3 * replay.speed:.2f}).",
             )
-            checks.append(Check(replay.speed <= asked.speed, speed))
-        return checks
 
     @cached_property
     def limits(self) -> dict[str, RouteLimit]:
@@ -203,22 +198,15 @@ class DrivenRoute(Result):
         """The report."""
         limits = self.limits
         where = {name: f"piece {row.piece}, {row.time:.2f} s" for name, row in limits.items()}
-        good = self.status is Status.OPTIMAL
-        title = self.message.removesuffix(".") if good else f"No drive: {self.status.words}"
-        return doc.Document(
-            self.name,
+        return self._outcome(
             "route",
-            title,
-            "" if good else self.message,
-            (
-                doc.section("", doc.facts(_facts(self))),
-                doc.section("Path", _legs(self)),
-                doc.section("Limits", limits_table(limits.values(), True, "time", where)),
-                doc.section("Checks", doc.checks(self.checks)),
-                doc.gallery(figures),
-            ),
-            good=good,
-            footer=doc.versions(self.sha256),
+            self.message.removesuffix("."),
+            f"No drive: {self.status.words}",
+            doc.section("", doc.facts(_facts(self))),
+            doc.section("Path", _legs(self)),
+            doc.section("Limits", limits_table(limits.values(), True, "time", where)),
+            doc.section("Checks", doc.checks(self.checks)),
+            doc.gallery(figures),
         )
 
     def save(

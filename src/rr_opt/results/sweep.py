@@ -89,15 +89,8 @@ class Sweep(Result):
         best, grid = self.best, self.found.found
         kept = f"{len(grid.speed)} gaits, of which {int(grid.feasible.sum())} respect all limits"
         facts = [*_facts(best), doc.Fact("grid", kept)] if best else [doc.Fact("grid", kept)]
-        return doc.Document(
-            self.name,
-            "sweep",
-            self.message if best else "No gait respects every limit",
-            "" if best else self.message,
-            (doc.section("", doc.facts(facts)), doc.gallery(figures)),
-            good=best is not None,
-            footer=doc.versions(self.sha256),
-        )
+        sections = doc.section("", doc.facts(facts)), doc.gallery(figures)
+        return self._outcome("sweep", self.message, "No gait respects every limit", *sections)
 
 
 def _facts(best: Found) -> Iterator[doc.Fact]:

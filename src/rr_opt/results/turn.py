@@ -283,15 +283,8 @@ class TurnChart(Result):
                 doc.section("The sign of the offset sets the side", _sign_facts(self.sign)),
                 doc.section("A larger offset makes a smaller radius", _radius_facts(self.radius)),
             )
-        return doc.Document(
-            self.name,
-            "turn chart",
-            self.message if tight else "No gait that turns respects every limit",
-            "" if tight else self.message,
-            (*facts, doc.gallery(figures)),
-            good=tight is not None,
-            footer=doc.versions(self.sha256),
-        )
+        failure = "No gait that turns respects every limit"
+        return self._outcome("turn chart", self.message, failure, *facts, doc.gallery(figures))
 
 
 def sine_text(gait: SineGait) -> str:
