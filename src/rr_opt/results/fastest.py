@@ -517,29 +517,21 @@ def _ratio(result: FastestGait) -> doc.Fact:
     choice, built = result.problem.inertia_ratio, result.problem.robot
     about = choice.about if choice else "joint"
     ratio = number(result.inertia_ratio or 0.0)
-    where = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
+    detail = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
     if choice is None or not result.rebuilt:
-        return doc.Fact("J20/J10", ratio, f"{where}, the robot as it is")
-    means = ", by loads on platform 2" if choice.by == "loads" else ""
-    return doc.Fact(
-        "J20/J10",
-        ratio,
-        f"{where}{means}: I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
-        f"(ratio {number(inertia_ratio(built, about))} -> {ratio})",
-    )
+        return doc.Fact("J20/J10", ratio, f"{detail}, the robot as it is")
+    detail += ", by loads on platform 2" if choice.by == "loads" else ""
+    detail += f": I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
+    detail += f"(ratio {number(inertia_ratio(built, about))} -> {ratio})"
+    return doc.Fact("J20/J10", ratio, detail)
 
 
 def _cycle(cycle: Cycle, *, turning: bool) -> doc.Fact:
-    """The rigid motion of one period: a step along a line or round a circle."""
-    step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
-    if not turning:
-        return doc.Fact("cycle", step, "straight")
-    return doc.Fact(
-        "cycle",
-        step,
-        f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
-        f"turning {math.degrees(cycle.dpsi):+.3g} deg a period",
-    )
+    step, way = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period", "straight"
+    if turning:
+        way = f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
+        way += f"turning {math.degrees(cycle.dpsi):+.3g} deg a period"
+    return doc.Fact("cycle", step, way)
 
 
 def _optima(result: FastestGait) -> doc.Table:

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
 from rr_opt.files.record import plain
 from rr_opt.formatting import QUANTITIES, direction_text, number, with_unit
-from rr_opt.model.problem import GaitBounds
 from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Check, Result
@@ -133,13 +133,9 @@ class FastestShapes(Result):
         )
 
 
-def family(answer: FastestGait) -> str:
+def family(answer: FastestGait | Optimum) -> str:
     """`sine`, `3 harmonics` or `free`."""
-    return family_name(answer.problem.gait)
-
-
-def family_name(gait: GaitBounds) -> str:
-    """`sine`, `3 harmonics` or `free`."""
+    gait = answer.problem.gait
     return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else gait.shape
 
 

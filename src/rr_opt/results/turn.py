@@ -277,12 +277,12 @@ class TurnChart(Result):
         facts: tuple[doc.Section, ...] = ()
         if tight:
             circle = f"{with_unit(tight.radius, 'm')} by {sine_text(tight.gait)}"
-            tightest = doc.Facts((doc.Fact("tightest", circle), speed_fact(tight.speed)))
-            facts = (
-                doc.section("", tightest),
-                doc.section("The sign of the offset sets the side", _sign_facts(self.sign)),
-                doc.section("A larger offset makes a smaller radius", _radius_facts(self.radius)),
-            )
+            texts = {
+                "": (doc.Fact("tightest", circle), speed_fact(tight.speed)),
+                "The sign of the offset sets the side": _sign_facts(self.sign),
+                "A larger offset makes a smaller radius": _radius_facts(self.radius),
+            }
+            facts = tuple(doc.section(title, doc.facts(each)) for title, each in texts.items())
         failure = "No gait that turns respects every limit"
         return self._outcome("turn chart", self.message, failure, *facts, doc.gallery(figures))
 
@@ -301,36 +301,30 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def _sign_facts(claim: SignClaim) -> doc.Facts:
+def _sign_facts(claim: SignClaim) -> Iterator[doc.Fact]:
     verdict = (
         f"holds for all {claim.gaits} gaits"
         if claim.holds
         else f"fails: {claim.rarer} of {claim.gaits} gaits turn to the other side"
     )
     forward = f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"
-    facts = [
-        doc.Fact("verdict", verdict),
-        doc.Fact("forward", forward),
-        doc.Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right"),
-    ]
+    yield doc.Fact("verdict", verdict)
+    yield doc.Fact("forward", forward)
+    yield doc.Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right")
     if claim.exception:
-        facts.append(doc.Fact("first at", sine_text(claim.exception)))
-    return doc.Facts(tuple(facts))
+        yield doc.Fact("first at", sine_text(claim.exception))
 
 
-def _radius_facts(claim: RadiusClaim) -> doc.Facts:
+def _radius_facts(claim: RadiusClaim) -> Iterator[doc.Fact]:
     curves = f"{claim.curves} curves of one amplitude and period"
     if claim.first is None or claim.worst is None:
-        return doc.Facts((doc.Fact("verdict", f"holds on all {curves}"),))
+        yield doc.Fact("verdict", f"holds on all {curves}")
+        return
     most = (
         "grows without bound to a straight line, where the turn changes sides"
         if math.isinf(claim.factor)
         else f"reaches {number(claim.factor)} times its least"
     )
-    return doc.Facts(
-        (
-            doc.Fact("verdict", f"fails on {claim.growing} of {curves}"),
-            doc.Fact("first at", sine_text(claim.first)),
-            doc.Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}"),
-        )
-    )
+    yield doc.Fact("verdict", f"fails on {claim.growing} of {curves}")
+    yield doc.Fact("first at", sine_text(claim.first))
+    yield doc.Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}")

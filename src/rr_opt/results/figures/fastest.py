@@ -258,13 +258,11 @@ def speed_map(
         ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=style.INK, mew=1.4, zorder=6)
     ax.plot(best.period, best.amplitude, ms=19, mew=1.2, zorder=7, label="optimum", **style.STAR)
     ax.set(xlim=(data.period[0], data.period[-1]), ylim=(data.amplitude[0], data.amplitude[-1]))
+    ax.set(**_LABELS)
     ax.grid(visible=False)
-    label(ax)
 
 
-def label(ax: Axes) -> None:
-    """Label the axes of a map of sines."""
-    ax.set(xlabel="period T, s", ylabel="amplitude α, rad")
+_LABELS = {"xlabel": "period T, s", "ylabel": "amplitude α, rad"}
 
 
 def _edges(ax: Axes, data: SpeedMap, shares: dict[str, Array], limits: Limits) -> None:
@@ -333,7 +331,7 @@ def draw_sweep(result: Sweep) -> dict[str, str]:
     if best:
         ax.plot(best.gait.period, best.gait.amplitude, ms=19, mew=1.2, zorder=5, **style.STAR)
     ax.set_title(f"{len(speed)} gaits: dots keep every limit, crosses do not", weight="normal")
-    label(ax)
+    ax.set(**_LABELS)
     return {"sweep": style.svg(drawn)}
 
 

@@ -213,10 +213,8 @@ def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
     seen = Counter(sets[case] for case in grid.cases.ravel())
     seen.pop(None, None)
     named = [name for name, _ in seen.most_common(len(_COLOURS))]
-    index = np.full(grid.cases.shape, np.nan)
-    for at, case in np.ndenumerate(grid.cases):
-        if sets[case] is not None:
-            index[at] = named.index(sets[case]) if sets[case] in named else len(named)
+    place = {None: np.nan, **{name: at for at, name in enumerate(named)}}
+    index = np.array([place.get(one, len(named)) for one in sets], float)[grid.cases]
     colours = [*_COLOURS[: len(named)], _OTHERS]
     style.hatched(ax)
     ax.pcolormesh(*grid.borders, index, cmap=ListedColormap(colours), vmin=-0.5,
