@@ -9,18 +9,23 @@ with Jinja2 expressions: sections `# key: Title`, each of paragraphs. Filters wr
 to three significant digits, `f(1)` to one decimal, `e` as a power of ten, `span` as a range.
 """
 
+from __future__ import annotations
+
 import csv
 import io
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from numpy.typing import NDArray
 
 from rr_opt.formatting import number
 from rr_opt.version import __version__
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 Tone = Literal["good", "bad", "note", "warn", "quiet"]
 
@@ -319,18 +324,23 @@ class Prose:
     paragraphs: tuple[str, ...]
 
 
-def prose(package: str, name: str, **context: Any) -> dict[str, Prose]:
-    """The sections of `texts/NAME` in a package, by key. Raises UndefinedError for a value missing
-    from the context."""
+def templates(package: str, folder: str, *, autoescape: bool = False) -> Environment:
+    """The templates in a folder of a package. Raises UndefinedError for a value that is missing."""
+    # Imported here as few results need Jinja2.
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    environment = Environment(
-        loader=PackageLoader(package, "texts"),
+    return Environment(
+        loader=PackageLoader(package, folder),
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=StrictUndefined,
-        autoescape=False,
+        autoescape=autoescape,
     )
+
+
+def prose(package: str, name: str, **context: Any) -> dict[str, Prose]:
+    """The sections of `texts/NAME` in a package, by key."""
+    environment = templates(package, "texts")
     environment.filters |= {
         "n": number,
         "f": lambda value, digits: f"{value:.{digits}f}",

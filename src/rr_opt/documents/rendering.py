@@ -132,16 +132,7 @@ def page(document: doc.Document) -> str:
 
 @cache
 def _template() -> Template:
-    # Imported here as only a page needs Jinja2.
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("rr_opt.documents"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
+    environment = doc.templates("rr_opt.documents", "templates", autoescape=True)
     environment.filters |= {
         "code": _code,
         "cell_text": doc.cell_text,

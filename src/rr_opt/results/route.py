@@ -251,21 +251,16 @@ class DrivenRoute(Result):
 
 def c_text(control: Feedback) -> str:
     """The controller as a C header."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
 
     def array(values: Any) -> str:
         if np.ndim(values):
             return "{" + ", ".join(map(array, values)) + "}"
         return f"{values:.12g}"
 
-    environment = Environment(
-        loader=PackageLoader("rr_opt", "data"), undefined=StrictUndefined, autoescape=False
-    )
-    text = environment.get_template("feedback.c").render(
-        c=control, array=array, version=__version__, constants=feedback_constants
-    )
+    template = doc.templates("rr_opt", "data").get_template("feedback.c")
+    context = {"c": control, "version": __version__, "constants": feedback_constants}
     lines = list[str]()
-    for row in text.splitlines():
+    for row in template.render(array=array, **context).splitlines():
         # An array in lines of a readable width.
         long = len(row) > _WIDTH
         lines += textwrap.wrap(row, _WIDTH, subsequent_indent="    ") if long else [row]

@@ -150,15 +150,11 @@ def study_columns(
         # An inactive limit has zero price.
         return of_optima(f"price_{name}", per, meaning, lambda one: prices(one).get(name, 0.0))
 
-    def expected(end: int, word: str) -> StudyColumn:
-        meaning = f"{word} |speed| expected from the neighbours"
-        cell = lambda row: row.expected and row.expected[end]  # noqa: E731
-        return of_rows(f"expected_{word}", "m/s", meaning, cell)
-
     on_fronts = [
         "; ".join(name for name, cases in fronts.items() if case in cases)
         for case in range(len(rows))
     ]
+    near, none = "|speed| expected from the neighbours", (None, None)
     branch = "family of optima that it belongs to"
     warm = "cold: from initial guesses; warm: from neighbours' optima"
     return [
@@ -183,8 +179,8 @@ def study_columns(
         StudyColumn("fronts", "", "costs for which no case is both faster and cheaper", on_fronts),
         *(price(name, "limit", attrgetter("prices")) for name in (*LIMIT_NAMES, *TOTAL_NAMES)),
         *(price(name, "active bound", attrgetter("bound_prices")) for name in BOUND_NAMES),
-        expected(0, "least"),
-        expected(1, "most"),
+        of_rows("expected_least", "m/s", f"least {near}", lambda row: (row.expected or none)[0]),
+        of_rows("expected_most", "m/s", f"most {near}", lambda row: (row.expected or none)[1]),
         of_rows("seconds", "s", "of CPU spent on the case", attrgetter("seconds")),
         of_rows("message", "", "the outcome in words", attrgetter("message")),
     ]

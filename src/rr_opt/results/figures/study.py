@@ -372,10 +372,8 @@ def _tangents(ax: Axes, result: SolvedStudy, cases: list[int], mine: Scale) -> N
 def _colour(scale: Scale, step: int) -> str:
     """The colour of a step of another axis."""
     steps = scale.steps
-    if scale.ordered:
-        norm = (LogNorm if scale.log else Normalize)(float(steps.min()), float(steps.max()))
-        return FAMILY(float(norm(steps[step])))  # type: ignore[return-value]
-    return FAMILY((steps[step] - 1) / max(len(steps) - 1, 1))  # type: ignore[return-value]
+    norm = (LogNorm if scale.log else Normalize)(float(steps.min()), float(steps.max()))
+    return FAMILY(float(norm(steps[step])))  # type: ignore[return-value]
 
 
 def _explain(ax: Axes, scale: Scale) -> None:
