@@ -147,11 +147,6 @@ class FastestGait(Result):
         return self.optimum.best.cost if self.optimum.best else None
 
     @property
-    def _aim(self) -> str:
-        """The quantity that the prices refer to."""
-        return "cost of transport" if self.cost else "speed"
-
-    @property
     def cycle(self) -> Cycle | None:
         """The rigid motion of a period; None if there is no gait."""
         if self.climbed:
@@ -225,9 +220,10 @@ class FastestGait(Result):
             if self.optimum.best:
                 name, share = worst_slack(self.optimum, self.optimum.best.gait, replay.reached)
                 most = LARGEST_SLACK[self.problem.gait.shape == "sine"]
+                aim = "cost of transport" if self.cost else "speed"
                 slackness = (
                     f"Complementary slackness: the price of the {name} times its slack is "
-                    f"{share:.1e} of the {self._aim} (tolerance {most:.0e})."
+                    f"{share:.1e} of the {aim} (tolerance {most:.0e})."
                 )
                 yield Check(share <= most, slackness)
         if self.cost and self.energy:
@@ -306,10 +302,12 @@ class FastestGait(Result):
         if sine:
             gain = 100 * (abs(best.speed) / sine - 1)
             texts.append(f"That is {gain:.1f} % faster than the fastest sine.")
-        if beyond := self._beyond_servo(best.gait):
+        gait, servo = best.gait, self.problem.robot.servo
+        torque = self.replay.reached["torque"] if self.replay else 0.0
+        if beyond := beyond_servo(servo, gait.peak_angle, gait.peak_rate, torque):
             texts.append(
                 "But the problem allows more than the robot's servo does: the gait exceeds its "
-                f"{listed(beyond)} limit."
+                f"{listed(name for name, *_ in beyond)} limit."
             )
         if self.sweep and math.isnan(self.sweep.error):
             texts.append("The sweep's own model cannot represent this shape and does not check it.")
@@ -319,12 +317,6 @@ class FastestGait(Result):
                 "perpendicular to its mean heading, so its direction is a matter of definition."
             )
         return texts
-
-    def _beyond_servo(self, gait: Gait) -> list[str]:
-        """Which limits of the robot file's servo the gait exceeds."""
-        torque = self.replay.reached["torque"] if self.replay else 0.0
-        beyond = beyond_servo(self.problem.robot.servo, gait.peak_angle, gait.peak_rate, torque)
-        return [name for name, *_ in beyond]
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -50,10 +50,15 @@ class InspectedRecordings(Result):
         netcdf: str | Path | None = None,
     ) -> list[Path]:
         """Write inspection.json and the page; netcdf: a file for the one recording."""
-        if netcdf is not None:
-            file_for_result(Path(netcdf))
+        if netcdf is None:
+            return super().save(path, figures=figures, progress=progress)
+        from rr_opt.recordings.readers.netcdf import write_netcdf
+
+        file, found = file_for_result(Path(netcdf)), self.recordings[0]
         written = super().save(path, figures=figures, progress=progress)
-        return written if netcdf is None else [*written, _netcdf(Path(netcdf), self.recordings[0])]
+        with whole(file) as temporary:
+            write_netcdf(temporary, replace(found.recording, doubts=found.doubts), found.gait)
+        return [*written, file]
 
     def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """Figures; for several recordings, each name begins with the file's."""
@@ -121,7 +126,9 @@ def _facts(found: Inspection) -> Iterator[doc.Fact]:
     yield doc.Fact("length", f"{length} from t = {start}", f"{len(recording)} samples at {rate}")
     yield doc.Fact("path", _path_text(found))
     yield doc.Fact("phi", _phi_text(found))
-    yield doc.Fact("noise", ", ".join(_noise_text(found, name) for name in recording.channels))
+    noise = {name: found.cleaned.noise[name].sigma for name in recording.channels}
+    sizes = (f"{n} {size_text(n, s) if math.isfinite(s) else '?'}" for n, s in noise.items())
+    yield doc.Fact("noise", ", ".join(sizes))
     sigma = {name: float(np.median(one)) for name, one in recording.sigma.items()}
     yield doc.Fact("sigma used", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
     yield doc.Fact("flagged", _flagged_text(found))
@@ -167,11 +174,6 @@ def _phi_text(found: Inspection) -> str:
     return f"{number(float(np.nanmin(phi)))} to {number(float(np.nanmax(phi)))} rad"
 
 
-def _noise_text(found: Inspection, channel: str) -> str:
-    sigma = found.cleaned.noise[channel].sigma
-    return f"{channel} {size_text(channel, sigma) if math.isfinite(sigma) else '?'}"
-
-
 def _flagged_text(found: Inspection) -> str:
     """How many samples of which channels are excluded, and why."""
     texts = []
@@ -197,15 +199,6 @@ def _table(found: Sequence[Inspection]) -> doc.Table:
             "Warnings": lambda one: doc.Badge(f"{len(one.doubts)}", "warn") if one.doubts else none,
         },
     )
-
-
-def _netcdf(path: Path, found: Inspection) -> Path:
-    """Write the cleaned recording, atomically. Raises InputError without the extra."""
-    from rr_opt.recordings.readers.netcdf import write_netcdf
-
-    with whole(path) as temporary:
-        write_netcdf(temporary, replace(found.recording, doubts=found.doubts), found.gait)
-    return path
 
 
 def travelled(recording: Recording) -> dict[str, float | None]:

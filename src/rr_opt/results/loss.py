@@ -63,20 +63,12 @@ def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
     source = f"{used} recording{'s' if used != 1 else ''} of {experiment.name or 'an experiment'}"
     origins = {}
     for name, one in found.parameters.items():
-        key = _key(name)
-        if key is None:
-            continue
+        key = ".".join(PARAMETERS[name].key) if name in PARAMETERS else f"physics.{name}"
+        if name not in PARAMETERS and "." not in name:
+            continue  # a zero of the capture system, which is not the robot's
         interval = f"{one.low:.4g} to {one.high:.4g} {one.unit}".removesuffix(" dimensionless")
         origins[key] = f"fitted: {interval} (95 %), {source}"
     return origins
-
-
-def _key(name: str) -> str | None:
-    """The key of a quantity in a robot file: `kappa1` under `platform1.kappa`; None for the capture
-    system's zeros, which are not the robot's."""
-    if name in PARAMETERS:
-        return ".".join(PARAMETERS[name].key)
-    return f"physics.{name}" if "." in name else None
 
 
 @dataclass(frozen=True)

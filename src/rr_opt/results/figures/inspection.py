@@ -63,17 +63,13 @@ def channels(axes: Sequence[Axes], recording: Recording, holes: Sequence[Gap]) -
         if not np.isfinite(y).all():
             ax.plot(*thinned(t, bridged(t, y)), color=style.PLATFORM2, lw=0.8)
         ax.plot(*thinned(t, y), color=style.INK, lw=1.1)
-        _bands(ax, channel, holes)
+        mine = [gap for gap in holes if channel in gap.channels or not gap.channels]
+        for gap in sorted(mine, key=lambda one: -one.length)[:_MOST_GAPS]:
+            ax.axvspan(gap.start, gap.end, color=style.PLATFORM2, alpha=0.25, lw=0)
         _flags(ax, recording, channel)
         ax.set(ylabel=_LABELS.get(channel, channel), xlim=(t[0], t[-1]))
         _limits(ax, y)
     axes[-1].set_xlabel("time, s")
-
-
-def _bands(ax: Axes, channel: str, holes: Sequence[Gap]) -> None:
-    mine = [gap for gap in holes if channel in gap.channels or not gap.channels]
-    for gap in sorted(mine, key=lambda one: -one.length)[:_MOST_GAPS]:
-        ax.axvspan(gap.start, gap.end, color=style.PLATFORM2, alpha=0.25, lw=0)
 
 
 def _flags(ax: Axes, recording: Recording, channel: str) -> None:

@@ -162,7 +162,9 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
         drawn.set_dpi(_DPI)
         canvas = FigureCanvasAgg(drawn)
         ax = drawn.add_subplot()
-        _view(ax, robot, trajectory)
+        margin, x, y = 0.75 * robot_length(robot), trajectory.x, trajectory.y
+        ax.set(xlim=(x.min() - margin, x.max() + margin), xlabel="x, m", aspect="equal")
+        ax.set(ylim=(y.min() - margin, y.max() + margin), ylabel="y, m")
         canvas.draw()
         drawn.set_layout_engine("none")
         still = canvas.copy_from_bbox(drawn.bbox)
@@ -178,17 +180,6 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
             yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
             for part in parts:
                 part.remove()
-
-
-def _view(ax: Axes, robot: Robot, trajectory: Trajectory) -> None:
-    margin = 0.75 * robot_length(robot)
-    ax.set(
-        xlim=(trajectory.x.min() - margin, trajectory.x.max() + margin),
-        ylim=(trajectory.y.min() - margin, trajectory.y.max() + margin),
-        aspect="equal",
-        xlabel="x, m",
-        ylabel="y, m",
-    )
 
 
 def _height(robot: Robot, trajectory: Trajectory) -> float:
