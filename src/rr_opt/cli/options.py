@@ -154,9 +154,7 @@ def read_problem(path: Path | None) -> Problem:
     """The problem of a file (None: the shipped one); warnings go to stderr."""
     from rr_opt.api.load import load, shipped
 
-    if path is None:
-        return shipped()
-    return read(load, path)
+    return shipped() if path is None else read(load, path)
 
 
 def read(load: Callable[[Path], Read], path: Path) -> Read:

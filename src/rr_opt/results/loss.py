@@ -176,12 +176,8 @@ def pace(speed: float) -> str:
     return f"{1e3 * abs(speed):.1f} mm/s {direction_text(speed)}"
 
 
-def loss_sentences(one: Loss | LossUnknown | None) -> str:
-    """A few sentences; nothing if the nominal robot is right."""
-    if one is None:
-        return ""
-    if isinstance(one, LossUnknown):
-        return one.sentence
+def loss_sentences(one: Loss) -> str:
+    """A few sentences."""
     text = (
         f"The best gait of the nominal robot ({gait_words(one.believed)}) promises "
         f"{pace(one.promised)}; the corrected robot reaches {pace(one.reached)} with it. Its own "
