@@ -383,7 +383,7 @@ class FastestGait(Result):
         """The report of a fastest gait."""
         choice, solved = self.problem.inertia_ratio, self.gait is not None
         chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
-        good, objective = self.status is Status.OPTIMAL, self.problem.objective
+        objective, failure = self.problem.objective, _TITLES[self.status]
         limits, bounds = self.limits.values(), self.bounds.values()
         lead = " ".join(
             [
@@ -392,25 +392,21 @@ class FastestGait(Result):
                 limited_by(limits, bounds) if self.replay else "",
             ]
         )
-        return doc.Document(
-            name=self.name,
-            kind="fastest gait",
-            title=self.headline or _TITLES[self.status],
-            lead=lead if good else self.message,
-            good=good,
-            sections=(
-                doc.section("", doc.facts(_facts(self), key=True)),
-                self._lead(),
-                self.robust.section() if self.robust else doc.section(""),
-                doc.section("Checks", doc.checks(self.checks)),
-                doc.gallery(figures),
-                doc.section("Limits", limits_table(limits, solved, objective), brief=solved),
-                doc.section("Decisions and their bounds", bounds_table(bounds, objective)),
-                doc.section("Local optima", _optima(self)),
-                doc.section("Robot", robot_table(self.robot, chosen), brief=False),
-                doc.section("Solver", _solver(self), brief=solved),
-            ),
-            footer=doc.versions(self.sha256),
+        return self._outcome(
+            "fastest gait",
+            self.headline or failure,
+            failure,
+            doc.section("", doc.facts(_facts(self), key=True)),
+            self._lead(),
+            self.robust.section() if self.robust else doc.section(""),
+            doc.section("Checks", doc.checks(self.checks)),
+            doc.gallery(figures),
+            doc.section("Limits", limits_table(limits, solved, objective), brief=solved),
+            doc.section("Decisions and their bounds", bounds_table(bounds, objective)),
+            doc.section("Local optima", _optima(self)),
+            doc.section("Robot", robot_table(self.robot, chosen), brief=False),
+            doc.section("Solver", _solver(self), brief=solved),
+            lead=lead,
         )
 
     def _lead(self) -> doc.Section:

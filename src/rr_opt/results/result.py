@@ -110,11 +110,13 @@ class Result:
         """The result as a report, from which the page and the text are made."""
         return Document("", "", "", "", ())
 
-    def _outcome(self, kind: str, title: str, failure: str, *sections: Section) -> Document:
+    def _outcome(
+        self, kind: str, title: str, failure: str, *sections: Section, lead: str = ""
+    ) -> Document:
         """A report under a title, or under the failure that the message then explains."""
         name, sha256 = getattr(self, "name", ""), getattr(self, "sha256", "")
         good = self.status is Status.OPTIMAL
-        head = (title, "") if good else (failure, self.message)
+        head = (title, lead) if good else (failure, self.message)
         return Document(name, kind, *head, sections, good=good, footer=versions(sha256))
 
     def _page(self, document: Document) -> Document:

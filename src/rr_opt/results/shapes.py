@@ -117,20 +117,13 @@ class FastestShapes(Result):
         if len(self.solved) > 1:
             gain = self.gain(self.solved[-1]) or 0.0
             title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
-        return doc.Document(
-            name=self.name,
-            kind="waveforms",
-            title=title,
-            lead=self.message,
-            good=self.status is Status.OPTIMAL,
-            sections=(
-                doc.gallery(figures),
-                doc.section("Families", _families(self)),
-                doc.section("Checks", count),
-                doc.section("", every, brief=False),
-            ),
-            footer=doc.versions(self.sha256),
+        sections = (
+            doc.gallery(figures),
+            doc.section("Families", _families(self)),
+            doc.section("Checks", count),
+            doc.section("", every, brief=False),
         )
+        return self._outcome("waveforms", title, title, *sections, lead=self.message)
 
 
 def family(answer: FastestGait | Optimum) -> str:
