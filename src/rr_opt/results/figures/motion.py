@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 import subprocess
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
@@ -27,6 +27,7 @@ from rr_opt.motion.steady_cycle import Cycle, SteadyCycle, Trajectory
 from rr_opt.outcome import InputError, RollerRacerError
 from rr_opt.results.figures import style
 from rr_opt.results.motion import Film, SimulatedMotion
+from rr_opt.results.result import Progress
 
 if TYPE_CHECKING:
     from rr_opt.results.route import DrivenRoute
@@ -286,14 +287,9 @@ def check_film(kind: Film) -> None:
 
 
 def write_film(
-    path: Path,
-    robot: Robot,
-    trajectory: Trajectory,
-    kind: Film,
-    progress: Callable[[str], None] = lambda _: None,
+    path: Path, robot: Robot, trajectory: Trajectory, kind: Film, progress: Progress
 ) -> Path:
     """Write the film, in real time; a motion too long for that is shown faster."""
-    check_film(kind)
     rate = _RATE[kind]
     count = min(max(round(rate * float(trajectory.t[-1])), 1), _MOST_FRAMES)
     chosen = np.linspace(0, len(trajectory.t) - 1, count + 1).round().astype(int)

@@ -1,8 +1,6 @@
 """The figures of a study: its varied keys as axes, maps of the speed and of the active limits."""
 
-import itertools
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 
@@ -299,7 +297,9 @@ def speed(ax: Axes, result: SolvedStudy, along: int) -> None:
     axes = [scale_of(axis) for axis in result.study.axes]
     mine, others = axes[along], [scale for at, scale in enumerate(axes) if at != along]
     x, left_out = mine.steps[mine.order], 0
-    lines = list(_lines(result, along, mine.order))
+    # A line for each combination of steps of the other axes.
+    grid = np.moveaxis(np.arange(len(result.rows)).reshape(result.study.shape), along, -1)
+    lines = [(fixed, grid[fixed][mine.order].tolist()) for fixed in np.ndindex(grid.shape[:-1])]
     # The first are the widest, so that coincident lines are all visible.
     widths = np.linspace(1.6 + 0.7 * min(len(lines) - 1, 5), 1.6, len(lines))
     for (fixed, cases), width in zip(lines, widths, strict=True):
@@ -326,16 +326,6 @@ def speed(ax: Axes, result: SolvedStudy, along: int) -> None:
     ax.set(ylim=(0, 1.06e3 * np.nanmax(result.speed)), ylabel="speed, mm/s")
     if others:
         _explain(ax, others[0])
-
-
-def _lines(
-    result: SolvedStudy, along: int, order: list[int]
-) -> Iterator[tuple[tuple[int, ...], list[int]]]:
-    """For each combination of the other axes: its steps there, and its cases in order."""
-    grid = np.arange(len(result.rows)).reshape(result.study.shape)
-    moved = np.moveaxis(grid, along, -1)
-    for fixed in itertools.product(*map(range, moved.shape[:-1])):
-        yield fixed, [int(case) for case in moved[fixed][order]]
 
 
 def _broken(
