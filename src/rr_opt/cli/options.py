@@ -86,7 +86,6 @@ Scheduler = Annotated[
     str | None, typer.Option(help="Run on a dask cluster: tcp://HOST:PORT of its scheduler.")
 ]
 
-
 Force = Annotated[
     bool, typer.Option("--force", help="Overwrite a result that answers another question.")
 ]

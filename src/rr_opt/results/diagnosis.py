@@ -172,7 +172,6 @@ _PLACES = (
 )
 """Where an effect can act, upstream first."""
 
-
 _STATES = {
     "fault": ("fault", "✗ fault"),
     "clear": ("clear", "✓ clear"),

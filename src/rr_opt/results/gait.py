@@ -83,7 +83,6 @@ def ignored_effects(robot: Robot, *, commanded: bool = False) -> tuple[str, ...]
 _SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
 """SI unit -> the unit shown, and how many of it are one SI unit."""
 
-
 _ORIGINS: dict[str, doc.Tone] = {"measured": "good", "fitted": "note", "assumed": "warn"}
 
 

@@ -28,7 +28,6 @@ from rr_opt.version import __version__
 
 Format = Literal["csv", "netcdf"]
 
-
 Film = Literal["gif", "mp4"]
 
 

@@ -20,7 +20,6 @@ from rr_opt.version import __version__
 
 Format = Literal["csv", "c-header", "servo"]
 
-
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
 """Endings of the file name, unless the user gives a name."""
 
@@ -140,10 +139,8 @@ MODEL = (
     "the next is sent. Its effects in `physics`, such as a lag, then act on that motion."
 )
 
-
 _NOTHING = 1e-6
 """A smaller relative change is the optimiser's rounding."""
-
 
 _STEPS = {
     "period": "by the changed period and amplitude",

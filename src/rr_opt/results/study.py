@@ -273,7 +273,6 @@ class SolvedStudy(_Study):
 
 COSTS = ("peak_torque", "energy_per_metre", "cost_of_transport")
 
-
 _MOST_ROWS = 300
 _STARTED = {
     "cold": "starts across the bounds",

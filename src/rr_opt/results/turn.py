@@ -183,7 +183,6 @@ def _facts(turn: FastestTurn, arc: MeanMotion) -> Iterator[doc.Fact]:
 _SPIN = 1e-4
 """A robot with a smaller radius, m, turns on the spot."""
 
-
 _AGREED = 1e-3
 """Largest relative difference at which two searches agree."""
 
