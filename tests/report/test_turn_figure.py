@@ -5,7 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import rr_opt as rr
-from rr_opt.results.figures.turn import arc
+from rr_opt.results.figures.fastest import arc
 
 
 def test_the_circle_and_the_arc(answer):

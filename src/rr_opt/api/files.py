@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rr_opt.documents.archive import file_for_result, write_text
+from rr_opt.documents.document import csv_columns
 from rr_opt.files import lint as of_files
 from rr_opt.files.experiment_file import read_plan
 from rr_opt.files.fields import schema_of
@@ -103,9 +104,8 @@ def _record(folder: Path) -> None:
     draw = np.random.default_rng(1)
     for run in plan.runs:
         driven = rollout(plan.robot, run.gait, _SECONDS, "steady", _RATE)
-        columns = [driven.t]
+        columns = {"t": driven.t}
         for name in ("x", "y", "psi", "phi"):
-            exact = getattr(driven, name)
-            columns.append(exact + plan.noise.of(name) * draw.normal(size=len(exact)))
-        rows = (",".join(f"{value:.6g}" for value in row) for row in np.column_stack(columns))
-        write_text(run.file, "\n".join(["t,x,y,psi,phi", *rows]) + "\n")
+            noise = plan.noise.of(name) * draw.normal(size=len(driven.t))
+            columns[name] = getattr(driven, name) + noise
+        write_text(run.file, csv_columns(list(columns), columns.values(), digits=6))

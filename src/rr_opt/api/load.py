@@ -187,8 +187,13 @@ def _source(path: Path | None, given: Container[str]) -> RobotWithGait:
         if "platform1" in document.data:
             gait = SineGait(_AMPLITUDE, _PERIOD, _OFFSET)
             return RobotWithGait(read_robot(path), gait, None, _doubts(path, gait, None, given))
-    if path is not None and path.is_dir():
-        _require_problem(path)
+    if path is not None and path.is_dir() and not (path / "problem.yaml").exists():
+        result = path / "result.json"
+        raise InputError(
+            f"{path}: This is a folder without problem.yaml. Expected a result.json, a robot "
+            "file, a problem file or its folder. "
+            + (f"Give {result}." if result.is_file() else "Give one of them.")
+        )
     problem = read_problem(path)
     bounds = problem.gait
     gait = SineGait(
@@ -311,13 +316,3 @@ def _doubts(
     result = Path("out") / name_of(path) / "result.json"
     choice = ", or --amplitude and --period" if defaults else ""
     return (" ".join([*notes, f"Run `{command}` first and give {result}{choice}."]),)
-
-
-def _require_problem(folder: Path) -> None:
-    if not (folder / "problem.yaml").exists():
-        result = folder / "result.json"
-        raise InputError(
-            f"{folder}: This is a folder without problem.yaml. Expected a result.json, a robot "
-            "file, a problem file or its folder. "
-            + (f"Give {result}." if result.is_file() else "Give one of them.")
-        )

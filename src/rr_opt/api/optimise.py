@@ -17,7 +17,7 @@ from rr_opt.motion.dynamics import require_friction
 from rr_opt.outcome import InputError, Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
-from rr_opt.results.shapes import FastestShapes, family_name
+from rr_opt.results.shapes import FastestShapes, family
 from rr_opt.results.sweep import Sweep
 from rr_opt.verify import sweep as verify
 from rr_opt.verify.grid import free_decisions
@@ -150,7 +150,7 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
         swept = verify.sweep(problem)
     answers = []
     for one in optima:
-        own = f"{name}, {family_name(one.problem.gait)}"
+        own = f"{name}, {family(one)}"
         optimum, replayed, check = checked_optimum(one, progress, swept)
         driven = driven_optimum(optimum, progress)
         answers.append(FastestGait(own, sha256, optimum, replayed, check, driven=driven))

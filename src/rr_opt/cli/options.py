@@ -86,7 +86,6 @@ Scheduler = Annotated[
     str | None, typer.Option(help="Run on a dask cluster: tcp://HOST:PORT of its scheduler.")
 ]
 
-
 Force = Annotated[
     bool, typer.Option("--force", help="Overwrite a result that answers another question.")
 ]
@@ -154,9 +153,7 @@ def read_problem(path: Path | None) -> Problem:
     """The problem of a file (None: the shipped one); warnings go to stderr."""
     from rr_opt.api.load import load, shipped
 
-    if path is None:
-        return shipped()
-    return read(load, path)
+    return shipped() if path is None else read(load, path)
 
 
 def read(load: Callable[[Path], Read], path: Path) -> Read:

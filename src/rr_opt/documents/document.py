@@ -9,16 +9,23 @@ with Jinja2 expressions: sections `# key: Title`, each of paragraphs. Filters wr
 to three significant digits, `f(1)` to one decimal, `e` as a power of ten, `span` as a range.
 """
 
+from __future__ import annotations
+
 import csv
 import io
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from numpy.typing import NDArray
 
 from rr_opt.formatting import number
 from rr_opt.version import __version__
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 Tone = Literal["good", "bad", "note", "warn", "quiet"]
 
@@ -99,6 +106,11 @@ def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 
     return text.getvalue()
 
 
+def csv_columns(names: Sequence[str], columns: Iterable[NDArray[Any]], digits: int = 9) -> str:
+    """Columns of numbers as CSV, like `csv_text`."""
+    return csv_text(names, zip(*(column.tolist() for column in columns), strict=True), digits)
+
+
 def heading(name: str, unit: str) -> str:
     """The heading of a column of numbers: `speed [m/s]`; of plain numbers the name alone."""
     return f"{name} [{unit}]" if unit not in ("", "1") else name
@@ -158,6 +170,11 @@ class Facts(Items):
     key: bool = False
 
 
+def facts(items: Iterable[Fact], *, key: bool = False) -> Facts:
+    """Facts of any iterable."""
+    return Facts(tuple(items), key)
+
+
 @dataclass(frozen=True)
 class Checks(Items):
     """Sentences, each with its outcome."""
@@ -212,12 +229,16 @@ Captions = Mapping[str, tuple[str, str, str]]
 """Title, alternative text and caption of figures by name."""
 
 
-def captioned(captions: Captions, drawn: Mapping[str, str]) -> tuple[Figure, ...]:
-    """The figures that were drawn (SVG texts by name), in the order of the captions."""
+def captioned(captions: Captions, drawn: Mapping[str, str | tuple[str, str]]) -> tuple[Figure, ...]:
+    """The figures that were drawn, in the order of the captions.
+
+    drawn  by name, SVG texts, or pairs of an SVG text and a caption of its own
+    """
+    pairs = {name: (one, "") if isinstance(one, str) else one for name, one in drawn.items()}
     return tuple(
-        Figure(name, title, drawn[name], alt, caption)
+        Figure(name, title, pairs[name][0], alt, pairs[name][1] or caption)
         for name, (title, alt, caption) in captions.items()
-        if name in drawn
+        if name in pairs
     )
 
 
@@ -239,6 +260,11 @@ class Section:
     title: str
     blocks: tuple[Block, ...]
     brief: bool = True
+
+
+def section(title: str, *blocks: Block, brief: bool = True) -> Section:
+    """A section of these blocks."""
+    return Section(title, blocks, brief)
 
 
 @dataclass(frozen=True)
@@ -282,13 +308,12 @@ def versions(sha256: str) -> tuple[str, str]:
 
 def gallery(figures: Iterable[Figure]) -> Section:
     """Figures as a section of the page; a terminal shows none."""
-    return Section("", (Gallery(tuple(figures)),), brief=False)
+    return section("", Gallery(tuple(figures)), brief=False)
 
 
-def facts_alone(facts: Iterable[Fact], *blocks: Block) -> Document:
+def facts_alone(items: Iterable[Fact], *blocks: Block) -> Document:
     """A report for a terminal only."""
-    sections = (Section("", (Facts(tuple(facts)),)), *(Section("", (one,)) for one in blocks))
-    return Document("", "", "", "", sections)
+    return Document("", "", "", "", tuple(section("", one) for one in (facts(items), *blocks)))
 
 
 @dataclass(frozen=True)
@@ -299,18 +324,23 @@ class Prose:
     paragraphs: tuple[str, ...]
 
 
-def prose(package: str, name: str, **context: Any) -> dict[str, Prose]:
-    """The sections of `texts/NAME` in a package, by key. Raises UndefinedError for a value missing
-    from the context."""
+def templates(package: str, folder: str, *, autoescape: bool = False) -> Environment:
+    """The templates in a folder of a package. Raises UndefinedError for a value that is missing."""
+    # Imported here as few results need Jinja2.
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    environment = Environment(
-        loader=PackageLoader(package, "texts"),
+    return Environment(
+        loader=PackageLoader(package, folder),
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=StrictUndefined,
-        autoescape=False,
+        autoescape=autoescape,
     )
+
+
+def prose(package: str, name: str, **context: Any) -> dict[str, Prose]:
+    """The sections of `texts/NAME` in a package, by key."""
+    environment = templates(package, "texts")
     environment.filters |= {
         "n": number,
         "f": lambda value, digits: f"{value:.{digits}f}",

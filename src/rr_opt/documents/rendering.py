@@ -124,14 +124,6 @@ def _marked_table(block: doc.Table) -> str:
 
 PAGE = "report.html"
 
-_KINDS = {
-    doc.Facts: "facts",
-    doc.Table: "table",
-    doc.Checks: "checks",
-    doc.Chain: "chain",
-    doc.Gallery: "gallery",
-}
-
 
 def page(document: doc.Document) -> str:
     """The whole page; all text is escaped."""
@@ -140,21 +132,12 @@ def page(document: doc.Document) -> str:
 
 @cache
 def _template() -> Template:
-    # Imported here as only a page needs Jinja2.
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("rr_opt.documents"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
+    environment = doc.templates("rr_opt.documents", "templates", autoescape=True)
     environment.filters |= {
         "code": _code,
         "cell_text": doc.cell_text,
         "data_uri": lambda svg: f"data:image/svg+xml,{quote(svg, safe=_PLAIN)}",
-        "kind": lambda block: _KINDS.get(type(block), "text"),
+        "kind": lambda block: type(block).__name__.lower(),
     }
     environment.tests |= {
         "badge": lambda cell: isinstance(cell, doc.Badge),

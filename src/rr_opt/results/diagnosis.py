@@ -137,8 +137,8 @@ class ExplainedExperiment(Explained[Experiment]):
             lead=found.summary,
             good=found.verdict == "consistent",
             sections=(
-                doc.Section("Where it goes wrong", (chain(self), chain_note(self))),
-                doc.Section("", (doc.Facts(tuple(_key_facts(self)), key=True),)),
+                doc.section("Where it goes wrong", chain(self), chain_note(self)),
+                doc.section("", doc.facts(_key_facts(self), key=True)),
                 doc.gallery(figures),
                 *(doc.Section(title, blocks) for title, blocks in sections.items()),
             ),
@@ -152,16 +152,6 @@ class ExplainedExperiment(Explained[Experiment]):
     def summary(self) -> str:
         """The verdict, findings with their intervals, misfits before and after, and next steps."""
         return terminal(doc.facts_alone(_summary_facts(self), self.found.summary))
-
-    def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
-        """The figures with their captions."""
-        progress("figures")
-        drawn = self._draw(self)
-        return tuple(
-            doc.Figure(name, title, drawn[name][0], alt, drawn[name][1])
-            for name, (title, alt, _) in self.CAPTIONS.items()
-            if name in drawn
-        )
 
     def _record(self) -> dict[str, Any]:
         return super()._record() | {"loss": loss_record(self.loss), "left_out": self.left_out}
@@ -181,7 +171,6 @@ _PLACES = (
     ("floor", ("floor",)),
 )
 """Where an effect can act, upstream first."""
-
 
 _STATES = {
     "fault": ("fault", "✗ fault"),

@@ -77,39 +77,33 @@ def headline(
 
 def value_text(one: Estimate) -> str:
     """`15.2 mN [14.1, 16.3]`, to the digits that its interval supports."""
-    unit, value, ends = _people(one)
-    return f"{value} {unit}".strip() + f" [{ends[0]}, {ends[1]}]"
+    low, high, _ = _texts(one, one.low, one.high)
+    return f"{number_text(one, one.value)} [{low}, {high}]"
 
 
 def interval_text(one: Estimate) -> str:
     """`14.1 to 16.3 mN`."""
-    unit, _, ends = _people(one)
-    return f"{ends[0]} to {ends[1]} {unit}".strip()
+    low, high, unit = _texts(one, one.low, one.high)
+    return f"{low} to {high} {unit}".strip()
 
 
 def number_text(one: Estimate, value: float) -> str:
     """Another value of the same quantity, in its unit and with its digits."""
-    unit, factor, digits = _scale(one)
-    return f"{_fixed(value * factor, digits)} {unit}".strip()
+    return " ".join(_texts(one, value)).strip()
 
 
-def _people(one: Estimate) -> tuple[str, str, tuple[str, str]]:
-    unit, factor, digits = _scale(one)
-    value, low, high = (_fixed(x * factor, digits) for x in (one.value, one.low, one.high))
-    return unit, value, (low, high)
-
-
-def _scale(one: Estimate) -> tuple[str, float, int | None]:
-    """Unit, how many of it are one SI unit, and decimals: two digits of the interval; or None."""
+def _texts(one: Estimate, *values: float) -> list[str]:
+    """Values of a quantity in its unit, to two digits of its interval; and the unit."""
     finite = [abs(x) for x in (one.value, one.low, one.high) if math.isfinite(x)]
     size = max(finite, default=0.0)
     unit, factor, below = _COMMON.get(one.unit, (one.unit, 1.0, math.inf))
     if size >= below:
         unit, factor = one.unit, 1.0
     width = (one.high - one.low) * factor
-    if not (math.isfinite(width) and width > 0) or not 1e-3 <= size * factor < 1e6:
-        return unit, factor, None
-    return unit, factor, min(max(1 - math.floor(math.log10(width / 2)), 0), 6)
+    digits = None
+    if math.isfinite(width) and width > 0 and 1e-3 <= size * factor < 1e6:
+        digits = min(max(1 - math.floor(math.log10(width / 2)), 0), 6)
+    return [*(_fixed(value * factor, digits) for value in values), unit]
 
 
 def _fixed(value: float, digits: int | None) -> str:

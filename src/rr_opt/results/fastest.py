@@ -13,7 +13,7 @@ from rr_opt.design.decisions import ballast_interval, with_ballast
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
 from rr_opt.files.record import plain, robot_record
-from rr_opt.formatting import counted, direction_text, number, pace_text, with_unit
+from rr_opt.formatting import QUANTITIES, counted, direction_text, number, pace_text, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio, load_count
 from rr_opt.model.gait import Gait
@@ -23,7 +23,9 @@ from rr_opt.motion.steady_cycle import Cycle, Energy, energy
 from rr_opt.outcome import Status
 from rr_opt.results.gait import gait_facts, robot_table, signed_fact, speed_fact
 from rr_opt.results.limits import (
+    BOUND_NAMES,
     LIMIT_NAMES,
+    TOTAL_NAMES,
     BoundRow,
     LimitRow,
     bound_rows,
@@ -145,11 +147,6 @@ class FastestGait(Result):
         return self.optimum.best.cost if self.optimum.best else None
 
     @property
-    def _aim(self) -> str:
-        """The quantity that the prices refer to."""
-        return "cost of transport" if self.cost else "speed"
-
-    @property
     def cycle(self) -> Cycle | None:
         """The rigid motion of a period; None if there is no gait."""
         if self.climbed:
@@ -204,7 +201,10 @@ class FastestGait(Result):
     def checks(self) -> list[Check]:
         """Replay by CVODES, the limits over the whole cycle, the sweep, and the gait driven with
         all effects of the robot."""
-        checks, replay, sweep = list[Check](), self.replay, self.sweep
+        return list(self._checks())
+
+    def _checks(self) -> Iterator[Check]:
+        replay, sweep = self.replay, self.sweep
         if replay:
             allowed = LARGEST_REPLAY_ERROR * replay.allowance
             speed = f"Replay by CVODES: {1e3 * replay.speed:+.3f} mm/s"
@@ -215,30 +215,31 @@ class FastestGait(Result):
                 if excess > 0
                 else "none is exceeded."
             )
-            checks += [
-                _within(speed, replay.error, allowed),
-                Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}"),
-            ]
+            yield _within(speed, replay.error, allowed)
+            yield Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}")
             if self.optimum.best:
                 name, share = worst_slack(self.optimum, self.optimum.best.gait, replay.reached)
                 most = LARGEST_SLACK[self.problem.gait.shape == "sine"]
+                aim = "cost of transport" if self.cost else "speed"
                 slackness = (
                     f"Complementary slackness: the price of the {name} times its slack is "
-                    f"{share:.1e} of the {self._aim} (tolerance {most:.0e})."
+                    f"{share:.1e} of the {aim} (tolerance {most:.0e})."
                 )
-                checks.append(Check(share <= most, slackness))
+                yield Check(share <= most, slackness)
         if self.cost and self.energy:
-            checks.append(self._cost_within("of the replay", self.energy.cost_of_transport))
+            yield self._cost_within("of the replay", self.energy.cost_of_transport)
         if sweep:
             better = _sweep_sentence(sweep, self.problem.gait.shape, self.cost)
-            checks.append(Check(sweep.better is None, better))
+            yield Check(sweep.better is None, better)
             if not math.isnan(sweep.error):
                 own = f"The sweep's own model of the optimum: {1e3 * sweep.speed:+.3f} mm/s"
-                checks.append(_within(own, sweep.error, sweep.largest_error))
+                yield _within(own, sweep.error, sweep.largest_error)
             if self.cost:
-                checks.append(self._cost_within("by the sweep's own model", sweep.cost))
-        checks += self.robust.checks if self.robust else []
-        return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
+                yield self._cost_within("by the sweep's own model", sweep.cost)
+        if self.robust:
+            yield self.robust.check
+        if self.driven and self.optimum.best:
+            yield _driven_check(self.driven, self.optimum, self.optimum.best.speed)
 
     def _cost_within(self, whose: str, cost: float) -> Check:
         error = abs(cost / (self.cost or math.nan) - 1)
@@ -301,10 +302,12 @@ class FastestGait(Result):
         if sine:
             gain = 100 * (abs(best.speed) / sine - 1)
             texts.append(f"That is {gain:.1f} % faster than the fastest sine.")
-        if beyond := self._beyond_servo(best.gait):
+        gait, servo = best.gait, self.problem.robot.servo
+        torque = self.replay.reached["torque"] if self.replay else 0.0
+        if beyond := beyond_servo(servo, gait.peak_angle, gait.peak_rate, torque):
             texts.append(
                 "But the problem allows more than the robot's servo does: the gait exceeds its "
-                f"{listed(beyond)} limit."
+                f"{listed(name for name, *_ in beyond)} limit."
             )
         if self.sweep and math.isnan(self.sweep.error):
             texts.append("The sweep's own model cannot represent this shape and does not check it.")
@@ -314,12 +317,6 @@ class FastestGait(Result):
                 "perpendicular to its mean heading, so its direction is a matter of definition."
             )
         return texts
-
-    def _beyond_servo(self, gait: Gait) -> list[str]:
-        """Which limits of the robot file's servo the gait exceeds."""
-        torque = self.replay.reached["torque"] if self.replay else 0.0
-        beyond = beyond_servo(self.problem.robot.servo, gait.peak_angle, gait.peak_rate, torque)
-        return [name for name, *_ in beyond]
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -386,52 +383,39 @@ class FastestGait(Result):
         """The report of a fastest gait."""
         choice, solved = self.problem.inertia_ratio, self.gait is not None
         chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
-        good, objective = self.status is Status.OPTIMAL, self.problem.objective
+        objective, failure = self.problem.objective, _TITLES[self.status]
+        limits, bounds = self.limits.values(), self.bounds.values()
         lead = " ".join(
             [
                 *([] if self.climbed else ["Every check confirms it."]),
                 *self.remarks,
-                limited_by(self.limits.values(), self.bounds.values()) if self.replay else "",
+                limited_by(limits, bounds) if self.replay else "",
             ]
         )
-        return doc.Document(
-            name=self.name,
-            kind="fastest gait",
-            title=self.headline or _TITLES[self.status],
-            lead=lead if good else self.message,
-            good=good,
-            sections=(
-                doc.Section("", (doc.Facts(tuple(_facts(self)), key=True),)),
-                self._lead(),
-                self.robust.section() if self.robust else doc.Section("", ()),
-                doc.Section(
-                    "Checks", (doc.checks((one.passed, one.sentence) for one in self.checks),)
-                ),
-                doc.gallery(figures),
-                doc.Section(
-                    "Limits",
-                    (limits_table(self.limits.values(), reached=solved, objective=objective),),
-                    brief=solved,
-                ),
-                doc.Section(
-                    "Decisions and their bounds", (bounds_table(self.bounds.values(), objective),)
-                ),
-                doc.Section("Local optima", (_optima(self),)),
-                doc.Section("Robot", (robot_table(self.robot, chosen),), brief=False),
-                doc.Section("Solver", (_solver(self),), brief=solved),
-            ),
-            footer=doc.versions(self.sha256),
+        return self._outcome(
+            "fastest gait",
+            self.headline or failure,
+            failure,
+            doc.section("", doc.facts(_facts(self), key=True)),
+            self._lead(),
+            self.robust.section() if self.robust else doc.section(""),
+            doc.section("Checks", doc.checks(self.checks)),
+            doc.gallery(figures),
+            doc.section("Limits", limits_table(limits, solved, objective), brief=solved),
+            doc.section("Decisions and their bounds", bounds_table(bounds, objective)),
+            doc.section("Local optima", _optima(self)),
+            doc.section("Robot", robot_table(self.robot, chosen), brief=False),
+            doc.section("Solver", _solver(self), brief=solved),
+            lead=lead,
         )
 
     def _lead(self) -> doc.Section:
         """The content before the checks."""
-        return doc.Section("", ())
+        return doc.section("")
 
     def _tables(self) -> dict[str, str]:
-        """The cycle as CSV; nothing without a gait."""
-        if self.replay is None:
-            return {}
-        return {"trajectory.csv": trajectory_csv(self.replay.steady)}
+        replay = self.replay
+        return {"trajectory.csv": trajectory_csv(replay.steady)} if replay else {}
 
 
 def _within(what: str, error: float, allowed: float) -> Check:
@@ -443,23 +427,18 @@ LARGEST_DRIVEN_ERROR = 0.01
 too or the gait was not improved further."""
 
 
-def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
+def _driven_check(found: DrivenOptimum, optimum: Optimum, speed: float) -> Check:
     """The commanded gait, driven by the simulation that predicts recordings."""
-    best, seen = optimum.best, found.driven
-    if best is None:
-        return []
-    names = listed(seen.effects)
+    seen, names = found.driven, listed(found.driven.effects)
     if found.beyond and optimum.problem.gait.shape == "sine" and not optimum.problem.turn:
         worst, excess = optimum.problem.limits.worst(seen.reached)
-        return [
-            Check(
-                excess <= LARGEST_EXCESS,
-                f"Driven with {names}: the tightest limit is that on {worst}, exceeded by "
-                f"{max(excess, 0.0):.1e} of its value (tolerance {LARGEST_EXCESS:.0e}).",
-            )
-        ]
+        return Check(
+            excess <= LARGEST_EXCESS,
+            f"Driven with {names}: the tightest limit is that on {worst}, exceeded by "
+            f"{max(excess, 0.0):.1e} of its value (tolerance {LARGEST_EXCESS:.0e}).",
+        )
     own = f"Driven with {names}, the gait above as the command: {1e3 * seen.speed:+.3f} mm/s"
-    return [_within(own, seen.error(best.speed), LARGEST_DRIVEN_ERROR)]
+    return _within(own, seen.error(speed), LARGEST_DRIVEN_ERROR)
 
 
 def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:
@@ -526,29 +505,21 @@ def _ratio(result: FastestGait) -> doc.Fact:
     choice, built = result.problem.inertia_ratio, result.problem.robot
     about = choice.about if choice else "joint"
     ratio = number(result.inertia_ratio or 0.0)
-    where = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
+    detail = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
     if choice is None or not result.rebuilt:
-        return doc.Fact("J20/J10", ratio, f"{where}, the robot as it is")
-    means = ", by loads on platform 2" if choice.by == "loads" else ""
-    return doc.Fact(
-        "J20/J10",
-        ratio,
-        f"{where}{means}: I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
-        f"(ratio {number(inertia_ratio(built, about))} -> {ratio})",
-    )
+        return doc.Fact("J20/J10", ratio, f"{detail}, the robot as it is")
+    detail += ", by loads on platform 2" if choice.by == "loads" else ""
+    detail += f": I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
+    detail += f"(ratio {number(inertia_ratio(built, about))} -> {ratio})"
+    return doc.Fact("J20/J10", ratio, detail)
 
 
 def _cycle(cycle: Cycle, *, turning: bool) -> doc.Fact:
-    """The rigid motion of one period: a step along a line or round a circle."""
-    step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
-    if not turning:
-        return doc.Fact("cycle", step, "straight")
-    return doc.Fact(
-        "cycle",
-        step,
-        f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
-        f"turning {math.degrees(cycle.dpsi):+.3g} deg a period",
-    )
+    step, way = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period", "straight"
+    if turning:
+        way = f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
+        way += f"turning {math.degrees(cycle.dpsi):+.3g} deg a period"
+    return doc.Fact("cycle", step, way)
 
 
 def _optima(result: FastestGait) -> doc.Table:
@@ -582,18 +553,9 @@ def _solver(result: FastestGait) -> str:
 
 
 UNITS = {
-    "angle": "rad",
-    "rate": "rad/s",
-    "torque": "N m",
-    "singularity": "m",
+    **{name: QUANTITIES[name].unit or "1" for name in (*LIMIT_NAMES, *BOUND_NAMES, *TOTAL_NAMES)},
     "grip": "1, largest side force of an axle over the load on it",
-    "amplitude": "rad",
-    "period": "s",
-    "offset": "rad",
-    "inertia_ratio": "1",
     "power": "W, mean positive power of the servo",
-    "cost_of_transport": "1",
-    "speed": "m/s",
     "speed_as_built": "m/s, of the fastest gait of the robot with its inertia ratio unchanged",
     "dx": "m",
     "dy": "m",

@@ -39,15 +39,13 @@ def _both(name: str, value: float) -> doc.Fact:
     return doc.Fact(name, first, f"({second}")
 
 
-def _harmonics(gait: Gait) -> tuple[doc.Fact, ...]:
+def _harmonics(gait: Gait) -> Iterator[doc.Fact]:
     if not isinstance(gait, FourierGait):
-        return ()
+        return
     least = _NEGLIGIBLE * max(map(abs, gait.sines + gait.cosines))
-    facts = []
     for n, sizes in enumerate(zip(gait.sines, gait.cosines, strict=True), 1):
         sine, cosine = (with_unit(size if abs(size) >= least else 0, "rad") for size in sizes)
-        facts.append(doc.Fact(f"harmonic {n}", f"{sine} of the sine, {cosine} of the cosine"))
-    return tuple(facts)
+        yield doc.Fact(f"harmonic {n}", f"{sine} of the sine, {cosine} of the cosine")
 
 
 def speed_fact(speed: float) -> doc.Fact:
@@ -85,10 +83,6 @@ def ignored_effects(robot: Robot, *, commanded: bool = False) -> tuple[str, ...]
 _SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
 """SI unit -> the unit shown, and how many of it are one SI unit."""
 
-
-_SERVO = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
-
-
 _ORIGINS: dict[str, doc.Tone] = {"measured": "good", "fitted": "note", "assumed": "warn"}
 
 
@@ -115,8 +109,8 @@ def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:
         parameter = PARAMETERS[name]
         unit, factor = _SHOWN.get(parameter.unit, (parameter.unit, 1.0))
         yield ".".join(parameter.key), parameter.words, with_unit(value * factor, unit)
-    for key, name in _SERVO.items():
-        kind = QUANTITIES[name]
+    for name in ("angle", "rate", "torque"):
+        key, kind = f"{name}_limit", QUANTITIES[name]
         yield f"servo.{key}", kind.words, kind.both(getattr(robot.servo, key))
     for use in robot.physics:
         for parameter, value in use.values.items():

@@ -52,9 +52,13 @@ class InspectedRecordings(Result):
         """Write inspection.json and the page; netcdf: a file for the one recording."""
         if netcdf is None:
             return super().save(path, figures=figures, progress=progress)
-        file_for_result(Path(netcdf))
+        from rr_opt.recordings.readers.netcdf import write_netcdf
+
+        file, found = file_for_result(Path(netcdf)), self.recordings[0]
         written = super().save(path, figures=figures, progress=progress)
-        return [*written, _netcdf(Path(netcdf), self.recordings[0])]
+        with whole(file) as temporary:
+            write_netcdf(temporary, replace(found.recording, doubts=found.doubts), found.gait)
+        return [*written, file]
 
     def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """Figures; for several recordings, each name begins with the file's."""
@@ -73,13 +77,12 @@ class InspectedRecordings(Result):
         found = self.recordings
         several, count = len(found) > 1, sum(len(one.doubts) for one in found)
         what = f"{len(found)} recordings" if several else "A recording"
-        sections = [doc.Section("Recordings", (_table(found),), brief=False)] if several else []
+        sections = [doc.section("Recordings", _table(found), brief=False)] if several else []
         for one in found:
-            doubts = doc.warnings(one.doubts) if one.doubts else "No warnings."
             stem = PurePath(one.name).stem
             own = (f for f in figures if not several or f.name.rpartition("-")[0] == stem)
-            sections.append(doc.Section(one.name, (doc.Facts(tuple(_facts(one))), doubts)))
-            sections.append(doc.gallery(own))
+            facts = doc.facts(_facts(one))
+            sections += [doc.section(one.name, facts, _warnings(one.doubts)), doc.gallery(own)]
         dropped = "Nothing was filled in or dropped."
         return _report(self.name, self.sha256, what, count, dropped, sections)
 
@@ -91,6 +94,10 @@ def _named(figures: Iterable[doc.Figure], recording: str) -> list[doc.Figure]:
         replace(one, name=f"{stem}-{one.name}", title=f"{recording}: {one.title}")
         for one in figures
     ]
+
+
+def _warnings(doubts: Sequence[str]) -> doc.Block:
+    return doc.warnings(doubts) if doubts else "No warnings."
 
 
 def _report(
@@ -119,7 +126,9 @@ def _facts(found: Inspection) -> Iterator[doc.Fact]:
     yield doc.Fact("length", f"{length} from t = {start}", f"{len(recording)} samples at {rate}")
     yield doc.Fact("path", _path_text(found))
     yield doc.Fact("phi", _phi_text(found))
-    yield doc.Fact("noise", ", ".join(_noise_text(found, name) for name in recording.channels))
+    noise = {name: found.cleaned.noise[name].sigma for name in recording.channels}
+    sizes = (f"{n} {size_text(n, s) if math.isfinite(s) else '?'}" for n, s in noise.items())
+    yield doc.Fact("noise", ", ".join(sizes))
     sigma = {name: float(np.median(one)) for name, one in recording.sigma.items()}
     yield doc.Fact("sigma used", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
     yield doc.Fact("flagged", _flagged_text(found))
@@ -165,54 +174,31 @@ def _phi_text(found: Inspection) -> str:
     return f"{number(float(np.nanmin(phi)))} to {number(float(np.nanmax(phi)))} rad"
 
 
-def _noise_text(found: Inspection, channel: str) -> str:
-    noise = found.cleaned.noise[channel]
-    if not math.isfinite(noise.sigma):
-        return f"{channel} ?"
-    return f"{channel} {size_text(channel, noise.sigma)}"
-
-
 def _flagged_text(found: Inspection) -> str:
     """How many samples of which channels are excluded, and why."""
-    recording = found.recording
     texts = []
-    for channel in recording.channels:
-        flags = recording.flags[channel]
-        counts = [
-            f"{int((flags & flag > 0).sum())} {str(flag.name).lower().replace('_', ' ')}"
-            for flag in Flag
-            if (flags & flag).any()
-        ]
-        if counts:
-            texts.append(f"{channel}: {', '.join(counts)}")
+    for channel in found.recording.channels:
+        flags = found.recording.flags[channel]
+        counts = ((int((flags & flag > 0).sum()), flag) for flag in Flag)
+        words = [f"{n} {str(flag.name).lower().replace('_', ' ')}" for n, flag in counts if n]
+        if words:
+            texts.append(f"{channel}: {', '.join(words)}")
     return "; ".join(texts) or "nothing"
 
 
 def _table(found: Sequence[Inspection]) -> doc.Table:
-    head = ["Recording", "Samples", "Length", "Noise of x", "Noise of phi", "Warnings"]
-    rows = []
-    for one in found:
-        noise, t, count = one.cleaned.noise, one.recording.t, len(one.doubts)
-        rows.append(
-            [
-                one.name,
-                str(len(t)),
-                f"{t[-1] - t[0]:.4g} s",
-                size_text("x", noise["x"].sigma),
-                size_text("phi", noise["phi"].sigma),
-                doc.Badge(str(count), "warn") if count else doc.Badge("none", "good"),
-            ]
-        )
-    return doc.table(head, rows)
-
-
-def _netcdf(path: Path, found: Inspection) -> Path:
-    """Write the cleaned recording, atomically. Raises InputError without the extra."""
-    from rr_opt.recordings.readers.netcdf import write_netcdf
-
-    with whole(path) as temporary:
-        write_netcdf(temporary, replace(found.recording, doubts=found.doubts), found.gait)
-    return path
+    none = doc.Badge("none", "good")
+    return doc.table_of(
+        found,
+        {
+            "Recording": lambda one: one.name,
+            "Samples": lambda one: str(len(one.recording)),
+            "Length": lambda one: f"{one.recording.t[-1] - one.recording.t[0]:.4g} s",
+            "Noise of x": lambda one: size_text("x", one.cleaned.noise["x"].sigma),
+            "Noise of phi": lambda one: size_text("phi", one.cleaned.noise["phi"].sigma),
+            "Warnings": lambda one: doc.Badge(f"{len(one.doubts)}", "warn") if one.doubts else none,
+        },
+    )
 
 
 def travelled(recording: Recording) -> dict[str, float | None]:
@@ -388,7 +374,7 @@ class InspectedMachine(Result):
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """Every recording with its channels and warnings."""
         experiment, count = self.experiment, len(self.warnings)
-        sections = [doc.Section(run.name, tuple(self._blocks(run))) for run in experiment.runs]
+        sections = [doc.section(run.name, *self._blocks(run)) for run in experiment.runs]
         what = f"{counted(len(experiment.runs), 'recording')} of {experiment.machine.words}"
         sections.append(doc.gallery(figures))
         dropped = "Outliers were dropped."
@@ -411,7 +397,7 @@ class InspectedMachine(Result):
                 "Missing": lambda c: str(int(np.isnan(data[c.name]).sum())),
             },
         )
-        return [facts, channels, doc.warnings(run.doubts) if run.doubts else "No warnings."]
+        return [facts, channels, _warnings(run.doubts)]
 
 
 def _data(run: MachineRun) -> Mapping[str, np.ndarray]:

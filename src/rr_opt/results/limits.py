@@ -17,7 +17,10 @@ ACTIVE = 1e-4
 """A limit is active when the gait is within this distance of it, relative to the limit."""
 
 LIMIT_NAMES = ("angle", "rate", "torque", "singularity", "grip")
-"""Limits of every problem; those on a gait's economy are shown if set."""
+"""Limits of every problem."""
+TOTAL_NAMES = ("power", "cost_of_transport", "speed")
+"""Limits on totals over a period, shown if set."""
+BOUND_NAMES = ("amplitude", "period", "offset", "inertia_ratio")
 
 _WORDS = {
     "angle": "the joint angle",
@@ -187,7 +190,6 @@ def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:
 
 def limits_table(
     rows: Iterable[LimitRow],
-    *,
     reached: bool,
     objective: str = "speed",
     where: Mapping[str, str] | None = None,

@@ -63,20 +63,12 @@ def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
     source = f"{used} recording{'s' if used != 1 else ''} of {experiment.name or 'an experiment'}"
     origins = {}
     for name, one in found.parameters.items():
-        key = _key(name)
-        if key is None:
-            continue
+        key = ".".join(PARAMETERS[name].key) if name in PARAMETERS else f"physics.{name}"
+        if name not in PARAMETERS and "." not in name:
+            continue  # a zero of the capture system, which is not the robot's
         interval = f"{one.low:.4g} to {one.high:.4g} {one.unit}".removesuffix(" dimensionless")
         origins[key] = f"fitted: {interval} (95 %), {source}"
     return origins
-
-
-def _key(name: str) -> str | None:
-    """The key of a quantity in a robot file: `kappa1` under `platform1.kappa`; None for the capture
-    system's zeros, which are not the robot's."""
-    if name in PARAMETERS:
-        return ".".join(PARAMETERS[name].key)
-    return f"physics.{name}" if "." in name else None
 
 
 @dataclass(frozen=True)
@@ -184,12 +176,8 @@ def pace(speed: float) -> str:
     return f"{1e3 * abs(speed):.1f} mm/s {direction_text(speed)}"
 
 
-def loss_sentences(one: Loss | LossUnknown | None) -> str:
-    """A few sentences; nothing if the nominal robot is right."""
-    if one is None:
-        return ""
-    if isinstance(one, LossUnknown):
-        return one.sentence
+def loss_sentences(one: Loss) -> str:
+    """A few sentences."""
     text = (
         f"The best gait of the nominal robot ({gait_words(one.believed)}) promises "
         f"{pace(one.promised)}; the corrected robot reaches {pace(one.reached)} with it. Its own "

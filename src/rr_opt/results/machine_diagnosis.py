@@ -92,7 +92,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
             lead=found.summary,
             good=found.verdict == "consistent",
             sections=(
-                doc.Section("What was found", (tables.effects_table(found),)),
+                doc.section("What was found", tables.effects_table(found)),
                 doc.gallery(figures),
                 *(doc.Section(title, blocks) for title, blocks in sections.items()),
             ),
@@ -103,7 +103,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
     def summary(self) -> str:
         """The verdict in a paragraph, and the tables."""
         whole = self.document()
-        lead = doc.Section("", (self.found.summary,))
+        lead = doc.section("", self.found.summary)
         return terminal(replace(whole, lead="", sections=(lead, *whole.sections)))
 
     def _open(self) -> Iterator[str]:

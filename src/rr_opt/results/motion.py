@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -27,7 +27,6 @@ from rr_opt.results.result import Progress, Result, picked, quiet
 from rr_opt.version import __version__
 
 Format = Literal["csv", "netcdf"]
-
 
 Film = Literal["gif", "mp4"]
 
@@ -194,10 +193,8 @@ _COLUMNS = {
 
 def trajectory_csv(trajectory: Trajectory) -> str:
     """t,x,y,psi,phi,v,torque in SI units, under a header row that has them."""
-    names = [field.name for field in fields(Trajectory)]
-    columns = (getattr(trajectory, name).tolist() for name in names)
-    head = [doc.heading(name, _COLUMNS[name][0]) for name in names]
-    return doc.csv_text(head, zip(*columns, strict=True))
+    head = [doc.heading(name, unit) for name, (unit, _) in _COLUMNS.items()]
+    return doc.csv_columns(head, (getattr(trajectory, name) for name in _COLUMNS))
 
 
 def write_netcdf(path: Path, trajectory: Trajectory) -> Path:

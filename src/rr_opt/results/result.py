@@ -1,13 +1,12 @@
 """What every result can do: report its status, and be printed, drawn and saved."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from rr_opt.documents.archive import folder_for_results, remove, write_json, write_text
-from rr_opt.documents.document import Captions, Document, Figure, captioned
+from rr_opt.documents.document import Captions, Document, Figure, Section, captioned, versions
 from rr_opt.documents.rendering import PAGE, markdown, page, terminal
 from rr_opt.files.record import plain
 from rr_opt.outcome import Status
@@ -52,8 +51,7 @@ def picked(source: Any, names: str) -> dict[str, Any]:
     return {name: getattr(source, name) for name in names.split()}
 
 
-@dataclass(frozen=True)
-class Check:
+class Check(NamedTuple):
     """One check of a result: whether it passed, and its finding in a sentence."""
 
     passed: bool
@@ -111,6 +109,15 @@ class Result:
     def document(self, figures: Sequence[Figure] = ()) -> Document:
         """The result as a report, from which the page and the text are made."""
         return Document("", "", "", "", ())
+
+    def _outcome(
+        self, kind: str, title: str, failure: str, *sections: Section, lead: str = ""
+    ) -> Document:
+        """A report under a title, or under the failure that the message then explains."""
+        name, sha256 = getattr(self, "name", ""), getattr(self, "sha256", "")
+        good = self.status is Status.OPTIMAL
+        head = (title, lead) if good else (failure, self.message)
+        return Document(name, kind, *head, sections, good=good, footer=versions(sha256))
 
     def _page(self, document: Document) -> Document:
         """The content of the page, if it is not the document itself."""

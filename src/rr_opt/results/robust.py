@@ -1,6 +1,7 @@
 """The gait that is fast across the robot's uncertainty, beside the nominal optimum."""
 
 from dataclasses import dataclass, replace
+from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -49,17 +50,15 @@ class Robust:
     curves: tuple[tuple[float, ...], tuple[float, ...]]
 
     @property
-    def checks(self) -> list[Check]:
-        """Checks on robots other than those that the speed was computed from."""
+    def check(self) -> Check:
+        """A check on robots other than those that the speed was computed from."""
         share = f"{100 * RELIABLE:g} %"
-        return [
-            Check(
-                min(self.reaching, self.keeping) >= RELIABLE - SHORT,
-                f"{DRAWN} other robots drawn: {100 * self.reaching:.1f} % reach the speed that "
-                f"{share} should reach with the robust gait, and {100 * self.keeping:.1f} % keep "
-                f"the torque limit (tolerance {100 * SHORT:g} %).",
-            )
-        ]
+        return Check(
+            min(self.reaching, self.keeping) >= RELIABLE - SHORT,
+            f"{DRAWN} other robots drawn: {100 * self.reaching:.1f} % reach the speed that "
+            f"{share} should reach with the robust gait, and {100 * self.keeping:.1f} % keep "
+            f"the torque limit (tolerance {100 * SHORT:g} %).",
+        )
 
     def sentence(self, best: float) -> str:
         """The price of certainty; best: the speed of the nominal optimum, m/s."""
@@ -84,7 +83,7 @@ class Robust:
             ("95 % reach", f"{1e3 * self.speed:+.2f} mm/s"),
             ("nominal", f"{1e3 * self.nominal:+.2f} mm/s"),
         ]
-        return doc.Section("Robust gait", (doc.Facts(tuple(doc.Fact(*row) for row in rows)),))
+        return doc.section("Robust gait", doc.facts(starmap(doc.Fact, rows)))
 
     def record(self) -> dict[str, Any]:
         """As plain data."""

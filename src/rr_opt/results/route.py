@@ -13,7 +13,7 @@ import numpy as np
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
 from rr_opt.files.record import plain
-from rr_opt.formatting import number, with_unit
+from rr_opt.formatting import number, side_text, with_unit
 from rr_opt.model.command import Command
 from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.model.robot import Robot
@@ -109,41 +109,36 @@ class DrivenRoute(Result):
     @property
     def checks(self) -> list[Check]:
         """Checks of the replay: the end, the path, and the limits."""
+        return list(self._checks())
+
+    def _checks(self) -> Iterator[Check]:
         replay, asked = self.replay, self.plan.route.tolerance
         if replay is None:
-            return []
+            return
         worst = self.plan.problem.limits.worst(replay.reached)[0]
         end = replay.position <= asked.position and replay.heading <= asked.heading
-        checks = [
-            Check(
-                end,
-                f"End point by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
-                f"{1e3 * asked.position:.4g}), and the heading is off by "
-                f"{math.degrees(replay.heading):.2f} deg (at most "
-                f"{math.degrees(asked.heading):.4g}).",
-            ),
-            Check(
-                replay.path <= asked.path,
-                f"Path by CVODES: P stays within {1e3 * replay.path:.1f} mm of the path (at most "
-                f"{1e3 * asked.path:.4g}).",
-            ),
-            Check(
-                replay.excess <= LARGEST_EXCESS,
-                "Limits of rate, angle, torque, singularity and grip: "
-                + (
-                    f"{worst} is exceeded by {100 * replay.excess:.2g} %."
-                    if replay.excess > 0
-                    else f"all are kept, the tightest with {-100 * replay.excess:.2f} % to spare."
-                ),
-            ),
-        ]
+        yield Check(
+            end,
+            f"End point by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
+            f"{1e3 * asked.position:.4g}), and the heading is off by "
+            f"{math.degrees(replay.heading):.2f} deg (at most {math.degrees(asked.heading):.4g}).",
+        )
+        yield Check(
+            replay.path <= asked.path,
+            f"Path by CVODES: P stays within {1e3 * replay.path:.1f} mm of the path (at most "
+            f"{1e3 * asked.path:.4g}).",
+        )
+        kept = f"all are kept, the tightest with {-100 * replay.excess:.2f} % to spare."
+        if replay.excess > 0:
+            kept = f"{worst} is exceeded by {100 * replay.excess:.2g} %."
+        limits = f"Limits of rate, angle, torque, singularity and grip: {kept}"
+        yield Check(replay.excess <= LARGEST_EXCESS, limits)
         if self.plan.route.end == "rest":
-            speed = (
+            yield Check(
+                replay.speed <= asked.speed,
                 f"Rest: the robot is slower than {1e3 * asked.speed:.4g} mm/s at the end "
-                f"({1e3 * replay.speed:.2f})."
+                f"({1e3 * replay.speed:.2f}).",
             )
-            checks.append(Check(replay.speed <= asked.speed, speed))
-        return checks
 
     @cached_property
     def limits(self) -> dict[str, RouteLimit]:
@@ -201,28 +196,17 @@ class DrivenRoute(Result):
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The report."""
-        sections = [doc.Section("", (doc.Facts(tuple(_facts(self))),))]
-        if self.plan.legs:
-            sections.append(doc.Section("Path", (_legs(self),)))
-        if self.limits:
-            where = {
-                name: f"piece {row.piece}, {row.time:.2f} s" for name, row in self.limits.items()
-            }
-            rows = limits_table(self.limits.values(), reached=True, objective="time", where=where)
-            sections.append(doc.Section("Limits", (rows,)))
-        if self.checks:
-            checks = doc.checks((check.passed, check.sentence) for check in self.checks)
-            sections.append(doc.Section("Checks", (checks,)))
-        good = self.status is Status.OPTIMAL
-        title = self.message.removesuffix(".") if good else f"No drive: {self.status.words}"
-        return doc.Document(
-            self.name,
+        limits = self.limits
+        where = {name: f"piece {row.piece}, {row.time:.2f} s" for name, row in limits.items()}
+        return self._outcome(
             "route",
-            title,
-            "" if good else self.message,
-            (*sections, doc.gallery(figures)),
-            good=good,
-            footer=doc.versions(self.sha256),
+            self.message.removesuffix("."),
+            f"No drive: {self.status.words}",
+            doc.section("", doc.facts(_facts(self))),
+            doc.section("Path", _legs(self)),
+            doc.section("Limits", limits_table(limits.values(), True, "time", where)),
+            doc.section("Checks", doc.checks(self.checks)),
+            doc.gallery(figures),
         )
 
     def save(
@@ -257,10 +241,8 @@ class DrivenRoute(Result):
         t = np.arange(math.ceil(command.seconds * _RATE) + 1) / _RATE
         phi = command.angle(np.minimum(t, command.seconds))
         counts = np.round(CENTRE + phi / COUNT).astype(int)
-        columns = (t.tolist(), phi.tolist(), np.degrees(phi).tolist(), counts.tolist())
-        tables["setpoints.csv"] = doc.csv_text(
-            ("t [s]", "phi [rad]", "phi [deg]", "count"), zip(*columns, strict=True)
-        )
+        head = ("t [s]", "phi [rad]", "phi [deg]", "count")
+        tables["setpoints.csv"] = doc.csv_columns(head, (t, phi, np.degrees(phi), counts))
         if self.feedback:
             tables["feedback.json"] = strict_json(plain(self.feedback))
             tables["feedback.c"] = c_text(self.feedback)
@@ -269,21 +251,16 @@ class DrivenRoute(Result):
 
 def c_text(control: Feedback) -> str:
     """The controller as a C header."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
 
     def array(values: Any) -> str:
         if np.ndim(values):
             return "{" + ", ".join(map(array, values)) + "}"
         return f"{values:.12g}"
 
-    environment = Environment(
-        loader=PackageLoader("rr_opt", "data"), undefined=StrictUndefined, autoescape=False
-    )
-    text = environment.get_template("feedback.c").render(
-        c=control, array=array, version=__version__, constants=feedback_constants
-    )
+    template = doc.templates("rr_opt", "data").get_template("feedback.c")
+    context = {"c": control, "version": __version__, "constants": feedback_constants}
     lines = list[str]()
-    for row in text.splitlines():
+    for row in template.render(array=array, **context).splitlines():
         # An array in lines of a readable width.
         long = len(row) > _WIDTH
         lines += textwrap.wrap(row, _WIDTH, subsequent_indent="    ") if long else [row]
@@ -316,19 +293,13 @@ def _legs(result: DrivenRoute) -> doc.Table:
     rows = []
     plan = result.plan
     for leg, gait, speed in zip(plan.legs, plan.gaits, plan.speeds, strict=True):
-        way = (
-            "straight"
-            if leg.curvature == 0
-            else f"radius {number(1 / abs(leg.curvature))} m, "
-            f"{number(math.degrees(abs(leg.curvature) * leg.length))} deg to the "
-            + ("left" if leg.curvature > 0 else "right")
-        )
-        rows.append(
-            (
-                str(leg.piece + 1), way, leg.length, gait.amplitude, gait.period, gait.offset,
-                1e3 * speed,
-            )
-        )  # fmt: skip
+        way = "straight"
+        if leg.curvature:
+            turn = number(math.degrees(abs(leg.curvature) * leg.length))
+            radius, side = number(1 / abs(leg.curvature)), side_text(leg.curvature)
+            way = f"radius {radius} m, {turn} deg to the {side}"
+        sizes = gait.amplitude, gait.period, gait.offset
+        rows.append((str(leg.piece + 1), way, leg.length, *sizes, 1e3 * speed))
     head = (
         *("piece", "way", "length, m", "amplitude, rad", "period, s", "offset, rad"),
         "steady speed, mm/s",

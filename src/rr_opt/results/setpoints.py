@@ -20,7 +20,6 @@ from rr_opt.version import __version__
 
 Format = Literal["csv", "c-header", "servo"]
 
-
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
 """Endings of the file name, unless the user gives a name."""
 
@@ -93,12 +92,11 @@ def text_of(points: SetPoints, format: Format) -> str:
 
     Raises InputError for an angle beyond the servo's counts.
     """
-    times = (np.arange(len(points.angles)) / points.rate).tolist()
+    t, phi = np.arange(len(points.angles)) / points.rate, points.angles
     if format == "csv":
-        angles = points.angles.tolist(), np.degrees(points.angles).tolist()
-        return doc.csv_text(("t [s]", "phi [rad]", "phi [deg]"), zip(times, *angles, strict=True))
+        return doc.csv_columns(("t [s]", "phi [rad]", "phi [deg]"), (t, phi, np.degrees(phi)))
     if format == "servo":
-        return doc.csv_text(("t [s]", "count"), zip(times, points.counts.tolist(), strict=True))
+        return doc.csv_columns(("t [s]", "count"), (t, points.counts))
     return _c_header(points)
 
 
@@ -141,10 +139,8 @@ MODEL = (
     "the next is sent. Its effects in `physics`, such as a lag, then act on that motion."
 )
 
-
 _NOTHING = 1e-6
 """A smaller relative change is the optimiser's rounding."""
-
 
 _STEPS = {
     "period": "by the changed period and amplitude",

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
 from rr_opt.files.record import plain
-from rr_opt.formatting import direction_text, number, with_unit
-from rr_opt.model.problem import GaitBounds
+from rr_opt.formatting import QUANTITIES, direction_text, number, with_unit
 from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Check, Result
@@ -102,7 +102,8 @@ class FastestShapes(Result):
     def _tables(self) -> dict[str, str]:
         """shapes.csv, and the record of each family."""
         rows = [_row(self, one) for one in self.answers]
-        head = [doc.heading(name, _UNITS.get(name, "")) for name in rows[0]]
+        kinds = {name: QUANTITIES.get(name.removeprefix("peak_")) for name in rows[0]}
+        head = [doc.heading(name, kind.unit if kind else "") for name, kind in kinds.items()]
         text = doc.csv_text(head, [list(row.values()) for row in rows], digits=12)
         return {"shapes.csv": text} | {_file(o): strict_json(o.record()) for o in self.answers}
 
@@ -116,41 +117,19 @@ class FastestShapes(Result):
         if len(self.solved) > 1:
             gain = self.gain(self.solved[-1]) or 0.0
             title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
-        return doc.Document(
-            name=self.name,
-            kind="waveforms",
-            title=title,
-            lead=self.message,
-            good=self.status is Status.OPTIMAL,
-            sections=(
-                doc.gallery(figures),
-                doc.Section("Families", (_families(self),)),
-                doc.Section("Checks", (count,)),
-                doc.Section("", (every,), brief=False),
-            ),
-            footer=doc.versions(self.sha256),
+        sections = (
+            doc.gallery(figures),
+            doc.section("Families", _families(self)),
+            doc.section("Checks", count),
+            doc.section("", every, brief=False),
         )
+        return self._outcome("waveforms", title, title, *sections, lead=self.message)
 
 
-def family(answer: FastestGait) -> str:
+def family(answer: FastestGait | Optimum) -> str:
     """`sine`, `3 harmonics` or `free`."""
-    return family_name(answer.problem.gait)
-
-
-def family_name(gait: GaitBounds) -> str:
-    """`sine`, `3 harmonics` or `free`."""
+    gait = answer.problem.gait
     return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else gait.shape
-
-
-_UNITS = {
-    "speed": "m/s",
-    "amplitude": "rad",
-    "period": "s",
-    "offset": "rad",
-    "peak_angle": "rad",
-    "peak_rate": "rad/s",
-    "peak_torque": "N m",
-}
 
 
 def _row(result: FastestShapes, answer: FastestGait) -> dict[str, Any]:

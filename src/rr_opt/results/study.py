@@ -56,7 +56,7 @@ class _Study(Result):
 
     @property
     def _statuses(self) -> list[Status]:
-        """Status of each row."""
+        """Of each row."""
         raise NotImplementedError
 
     @property
@@ -248,6 +248,7 @@ class SolvedStudy(_Study):
             span = f"{np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
             title = f"The best speed of {cases} cases ranges from {span}"
         shown = min(cases, _MOST_ROWS)
+        shown_cases = "All cases" if shown == cases else f"The first {shown} cases"
         return doc.Document(
             name=self.study.name,
             kind="study",
@@ -255,16 +256,12 @@ class SolvedStudy(_Study):
             lead=" ".join([self.message, *self.warnings]),
             good=good,
             sections=(
-                doc.Section("", (doc.Facts(_key_facts(self), key=True),), brief=False),
-                doc.Section("", (doc.Facts(tuple(_facts(self))),)),
+                doc.section("", doc.Facts(_key_facts(self), key=True), brief=False),
+                doc.section("", doc.facts(_facts(self))),
                 doc.gallery(figures),
-                doc.Section("Fastest for their cost", (_front_table(self),), brief=False),
-                doc.Section("Cases without an optimum", (_failures(self),), brief=False),
-                doc.Section(
-                    "All cases" if shown == cases else f"The first {shown} cases",
-                    (_cases_table(self, range(shown)),),
-                    brief=False,
-                ),
+                doc.section("Fastest for their cost", _front_table(self), brief=False),
+                doc.section("Cases without an optimum", _failures(self), brief=False),
+                doc.section(shown_cases, _cases_table(self, range(shown)), brief=False),
             ),
             footer=(
                 "Each optimum was checked against its limits and a fine simulation; `rr-opt "
@@ -275,7 +272,6 @@ class SolvedStudy(_Study):
 
 
 COSTS = ("peak_torque", "energy_per_metre", "cost_of_transport")
-
 
 _MOST_ROWS = 300
 _STARTED = {
@@ -388,30 +384,29 @@ class DrivenRoutes(_Study):
     def warnings(self) -> tuple[str, ...]:
         """For each route that could not be driven, why."""
         return tuple(
-            f"{route.name}: {row['message']}"
-            for route, row in zip(self.study.routes, self.rows, strict=True)
+            f"{name}: {row['message']}"
+            for name, row in self._named
             if row["status"] != Status.OPTIMAL.value
         )
 
+    @property
+    def _named(self) -> list[tuple[str, Mapping[str, Any]]]:
+        return [(one.name, row) for one, row in zip(self.study.routes, self.rows, strict=True)]
+
     def _record(self) -> dict[str, Any]:
-        named = zip(self.study.routes, self.rows, strict=True)
-        return super()._record() | {"routes": [{"name": route.name, **row} for route, row in named]}
+        return super()._record() | {"routes": [{"name": name, **row} for name, row in self._named]}
 
     def _tables(self) -> Mapping[str, str]:
         """study.csv, and NAME.json for each driven route, in the format of route.json."""
-        named = list(zip(self.study.routes, self.rows, strict=True))
-        cells = ((route.name, *_cells(row)) for route, row in named)
-        tables = {"study.csv": doc.csv_text(("route", *_HEADINGS), cells)}
-        for route, row in named:
-            if row.get("command"):
-                tables[f"{route.name}.json"] = strict_json(row)
-        return tables
+        cells = ((name, *_cells(row)) for name, row in self._named)
+        records = {f"{n}.json": strict_json(row) for n, row in self._named if row.get("command")}
+        return {"study.csv": doc.csv_text(("route", *_HEADINGS), cells), **records}
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """A table of the routes."""
         rows = (
-            (route.name, doc.Badge(Status(row["status"]).words), *_cells(row)[1:])
-            for route, row in zip(self.study.routes, self.rows, strict=True)
+            (name, doc.Badge(Status(row["status"]).words), *_cells(row)[1:])
+            for name, row in self._named
         )
         table = doc.table(("route", *_HEADINGS), rows)
         return doc.Document(
@@ -420,7 +415,7 @@ class DrivenRoutes(_Study):
             title=self.message.removesuffix("."),
             lead=" ".join(self.warnings),
             good=self.status is Status.OPTIMAL,
-            sections=(doc.Section("Routes", (table,)), doc.gallery(figures)),
+            sections=(doc.section("Routes", table), doc.gallery(figures)),
             footer=doc.versions(self.sha256),
         )
 

@@ -16,10 +16,10 @@ from rr_opt.files.study_axes import Axis, ProblemKey
 from rr_opt.files.study_file import Study
 from rr_opt.formatting import QUANTITIES, direction_text, with_unit
 from rr_opt.model.parameters import PARAMETERS, SYMBOLS
+from rr_opt.results.limits import BOUND_NAMES, LIMIT_NAMES, TOTAL_NAMES
 from rr_opt.units import to_si
 from rr_opt.version import __version__
 
-_LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
 _SMALL = {"m": ("mm", 1e3), "N m s": ("µN m s", 1e6)}
 """SI unit -> the unit shown, and how many of it are one SI unit."""
 
@@ -27,7 +27,7 @@ _SMALL = {"m": ("mm", 1e3), "N m s": ("µN m s", 1e6)}
 def unit_of(key: ProblemKey) -> tuple[str, float]:
     """The unit, empty for none, and how many of it are one SI unit."""
     name = str(key.path[-1] if isinstance(key.path[-1], str) else key.path[-2])
-    kind = QUANTITIES.get(_LIKE.get(name, name))
+    kind = QUANTITIES.get(name.removesuffix("_limit"))
     unit, factor = kind.common if kind else (key.unit or "", 1.0)
     return _SMALL.get(unit, (unit, factor))
 
@@ -96,12 +96,6 @@ _OF_OPTIMUM = (
     ("net_energy_per_metre", "J/m", "net work of the servo per metre: what friction takes"),
     ("cost_of_transport", "1", "energy_per_metre over the weight"),
 )
-_LIMITS = (
-    *(("angle", "rad"), ("rate", "rad/s"), ("torque", "N m")),
-    *(("singularity", "m"), ("grip", ""), ("power", "W"), ("cost_of_transport", "")),
-    ("speed", "m/s"),
-)
-_BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_ratio", ""))
 
 
 @dataclass(frozen=True)
@@ -150,20 +144,17 @@ def study_columns(
     ) -> StudyColumn:
         return of_rows(name, unit, meaning, lambda row: row.optimum and cell(row.optimum))
 
-    def price(name: str, unit: str, what: str, prices: Callable[[CaseOptimum], Any]) -> StudyColumn:
-        per, meaning = f"m/s per {unit}" if unit else "m/s", f"speed gained per unit of the {what}"
+    def price(name: str, what: str, prices: Callable[[CaseOptimum], Any]) -> StudyColumn:
+        unit, meaning = QUANTITIES[name].unit, f"speed gained per unit of the {what}"
+        per = f"m/s per {unit}" if unit else "m/s"
         # An inactive limit has zero price.
         return of_optima(f"price_{name}", per, meaning, lambda one: prices(one).get(name, 0.0))
-
-    def expected(end: int, word: str) -> StudyColumn:
-        meaning = f"{word} |speed| expected from the neighbours"
-        cell = lambda row: row.expected and row.expected[end]  # noqa: E731
-        return of_rows(f"expected_{word}", "m/s", meaning, cell)
 
     on_fronts = [
         "; ".join(name for name, cases in fronts.items() if case in cases)
         for case in range(len(rows))
     ]
+    near, none = "|speed| expected from the neighbours", (None, None)
     branch = "family of optima that it belongs to"
     warm = "cold: from initial guesses; warm: from neighbours' optima"
     return [
@@ -186,10 +177,10 @@ def study_columns(
         *(of_optima(*described, attrgetter(described[0])) for described in _OF_OPTIMUM),
         of_optima("held_by", "", "active limits and bounds", lambda one: "; ".join(one.held)),
         StudyColumn("fronts", "", "costs for which no case is both faster and cheaper", on_fronts),
-        *(price(*named, "limit", attrgetter("prices")) for named in _LIMITS),
-        *(price(*named, "active bound", attrgetter("bound_prices")) for named in _BOUNDS),
-        expected(0, "least"),
-        expected(1, "most"),
+        *(price(name, "limit", attrgetter("prices")) for name in (*LIMIT_NAMES, *TOTAL_NAMES)),
+        *(price(name, "active bound", attrgetter("bound_prices")) for name in BOUND_NAMES),
+        of_rows("expected_least", "m/s", f"least {near}", lambda row: (row.expected or none)[0]),
+        of_rows("expected_most", "m/s", f"most {near}", lambda row: (row.expected or none)[1]),
         of_rows("seconds", "s", "of CPU spent on the case", attrgetter("seconds")),
         of_rows("message", "", "the outcome in words", attrgetter("message")),
     ]

@@ -1,6 +1,6 @@
 """A plain sweep: a grid of gaits, the best of them, and a row for each as CSV."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,31 +82,23 @@ class Sweep(Result):
         names = (*_COLUMNS, *(f"keeps_{name}" for name in LIMITS))
         kept = [found.keeps[name].astype(int) for name in LIMITS]
         columns = [*found.decisions, found.speed, found.peak_torque, *kept]
-        rows = zip(*(column.tolist() for column in columns), strict=True)
-        return {"sweep.csv": doc.csv_text(names, rows)}
+        return {"sweep.csv": doc.csv_columns(names, columns)}
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The best gait and the grid."""
         best, grid = self.best, self.found.found
-        facts: list[doc.Fact] = []
-        if best:
-            ratio = "the robot as it is" if best.ratio is None else number(best.ratio)
-            facts = [
-                *gait_facts(best.gait),
-                doc.Fact("J20/J10", ratio),
-                speed_fact(best.speed),
-                doc.Fact("torque", f"{with_unit(best.peak_torque, 'N m')} at most"),
-            ]
         kept = f"{len(grid.speed)} gaits, of which {int(grid.feasible.sum())} respect all limits"
-        return doc.Document(
-            self.name,
-            "sweep",
-            self.message if best else "No gait respects every limit",
-            "" if best else self.message,
-            (doc.Section("", (doc.Facts((*facts, doc.Fact("grid", kept))),)), doc.gallery(figures)),
-            good=best is not None,
-            footer=doc.versions(self.sha256),
-        )
+        facts = [*_facts(best), doc.Fact("grid", kept)] if best else [doc.Fact("grid", kept)]
+        sections = doc.section("", doc.facts(facts)), doc.gallery(figures)
+        return self._outcome("sweep", self.message, "No gait respects every limit", *sections)
+
+
+def _facts(best: Found) -> Iterator[doc.Fact]:
+    ratio = "the robot as it is" if best.ratio is None else number(best.ratio)
+    yield from gait_facts(best.gait)
+    yield doc.Fact("J20/J10", ratio)
+    yield speed_fact(best.speed)
+    yield doc.Fact("torque", f"{with_unit(best.peak_torque, 'N m')} at most")
 
 
 def _found(one: Found | None) -> dict[str, Any] | None:

@@ -31,7 +31,7 @@ class FastestTurn(FastestGait):
     circle   whether the robot stays on the circle, and converges to it from rest; None likewise
     """
 
-    DRAW = "rr_opt.results.figures.turn.draw_turn"
+    DRAW = "rr_opt.results.figures.fastest.draw_turn"
     CAPTIONS: ClassVar = {**FastestGait.CAPTIONS, **doc.captions("turn")}
 
     target: Target = field(default_factory=Target)
@@ -121,8 +121,7 @@ class FastestTurn(FastestGait):
         return replace(super().document(figures), kind="fastest turn")
 
     def _lead(self) -> doc.Section:
-        facts = tuple(_facts(self, self.arc)) if self.arc else ()
-        return doc.Section("Turn", (doc.Facts(facts),))
+        return doc.section("Turn", doc.facts(_facts(self, self.arc) if self.arc else ()))
 
 
 def _circle_checks(circle: CircleCheck) -> list[Check]:
@@ -184,7 +183,6 @@ def _facts(turn: FastestTurn, arc: MeanMotion) -> Iterator[doc.Fact]:
 _SPIN = 1e-4
 """A robot with a smaller radius, m, turns on the spot."""
 
-
 _AGREED = 1e-3
 """Largest relative difference at which two searches agree."""
 
@@ -200,7 +198,7 @@ class TurnChart(Result):
 
     FILE = "turn-chart.json"
     OTHERS = ("turn-chart.csv",)
-    DRAW = "rr_opt.results.figures.turn.draw_chart"
+    DRAW = "rr_opt.results.figures.fastest.draw_chart"
     CAPTIONS = doc.captions("turn chart")
 
     name: str
@@ -270,8 +268,7 @@ class TurnChart(Result):
             np.concatenate([there[..., left], here], axis=-1).ravel() + 0
             for here, there in zip(parts, mirror, strict=True)
         ]
-        rows = zip(*(part.tolist() for part in both), strict=True)
-        return {"turn-chart.csv": doc.csv_text(COLUMNS, rows)}
+        return {"turn-chart.csv": doc.csv_columns(COLUMNS, both)}
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The tightest circle, and the paper's claim on the offset."""
@@ -279,23 +276,14 @@ class TurnChart(Result):
         facts: tuple[doc.Section, ...] = ()
         if tight:
             circle = f"{with_unit(tight.radius, 'm')} by {sine_text(tight.gait)}"
-            tightest = doc.Facts((doc.Fact("tightest", circle), speed_fact(tight.speed)))
-            facts = (
-                doc.Section("", (tightest,)),
-                doc.Section("The sign of the offset sets the side", (_sign_facts(self.sign),)),
-                doc.Section(
-                    "A larger offset makes a smaller radius", (_radius_facts(self.radius),)
-                ),
-            )
-        return doc.Document(
-            self.name,
-            "turn chart",
-            self.message if tight else "No gait that turns respects every limit",
-            "" if tight else self.message,
-            (*facts, doc.gallery(figures)),
-            good=tight is not None,
-            footer=doc.versions(self.sha256),
-        )
+            texts = {
+                "": (doc.Fact("tightest", circle), speed_fact(tight.speed)),
+                "The sign of the offset sets the side": _sign_facts(self.sign),
+                "A larger offset makes a smaller radius": _radius_facts(self.radius),
+            }
+            facts = tuple(doc.section(title, doc.facts(each)) for title, each in texts.items())
+        failure = "No gait that turns respects every limit"
+        return self._outcome("turn chart", self.message, failure, *facts, doc.gallery(figures))
 
 
 def sine_text(gait: SineGait) -> str:
@@ -312,36 +300,30 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def _sign_facts(claim: SignClaim) -> doc.Facts:
+def _sign_facts(claim: SignClaim) -> Iterator[doc.Fact]:
     verdict = (
         f"holds for all {claim.gaits} gaits"
         if claim.holds
         else f"fails: {claim.rarer} of {claim.gaits} gaits turn to the other side"
     )
     forward = f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"
-    facts = [
-        doc.Fact("verdict", verdict),
-        doc.Fact("forward", forward),
-        doc.Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right"),
-    ]
+    yield doc.Fact("verdict", verdict)
+    yield doc.Fact("forward", forward)
+    yield doc.Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right")
     if claim.exception:
-        facts.append(doc.Fact("first at", sine_text(claim.exception)))
-    return doc.Facts(tuple(facts))
+        yield doc.Fact("first at", sine_text(claim.exception))
 
 
-def _radius_facts(claim: RadiusClaim) -> doc.Facts:
+def _radius_facts(claim: RadiusClaim) -> Iterator[doc.Fact]:
     curves = f"{claim.curves} curves of one amplitude and period"
     if claim.first is None or claim.worst is None:
-        return doc.Facts((doc.Fact("verdict", f"holds on all {curves}"),))
+        yield doc.Fact("verdict", f"holds on all {curves}")
+        return
     most = (
         "grows without bound to a straight line, where the turn changes sides"
         if math.isinf(claim.factor)
         else f"reaches {number(claim.factor)} times its least"
     )
-    return doc.Facts(
-        (
-            doc.Fact("verdict", f"fails on {claim.growing} of {curves}"),
-            doc.Fact("first at", sine_text(claim.first)),
-            doc.Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}"),
-        )
-    )
+    yield doc.Fact("verdict", f"fails on {claim.growing} of {curves}")
+    yield doc.Fact("first at", sine_text(claim.first))
+    yield doc.Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}")

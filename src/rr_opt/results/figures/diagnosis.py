@@ -1,6 +1,7 @@
 """How well the nominal and the corrected model predict the recordings, in sigma."""
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -134,11 +135,8 @@ def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     curves = [(stage, each) for stage in one.guilty for each in stage.curves][:_MOST_CURVES]
     if not curves:
         return None
-    rows = -(-len(curves) // 2)
-    made = style.figure(height=0.4 + 2.1 * rows)
-    axes = style.grid(made, len(curves), min(len(curves), 2))
-    for ax, (stage, each) in zip(axes, curves, strict=True):
-        _curve(ax, each, _input_words(stage.channel))
+    shown = [(each, _input_words(stage.channel)) for stage, each in curves]
+    made = _curves(shown, 0.4 + 2.1 * -(-len(curves) // 2), 2)
     names = dict.fromkeys(stage.name.replace("_", " ") for stage, _ in curves)
     return made, (
         f"The unknown input ({' and '.join(names)}) that would explain most of the misfit of the "
@@ -150,9 +148,7 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     some = one.found.residue
     if not some:
         return None
-    made = style.figure(height=0.3 + 2.4 * len(some))
-    for ax, each in zip(style.grid(made, len(some), 1), some, strict=True):
-        _curve(ax, each, _input_words(each.kind))
+    made = _curves([(each, _input_words(each.kind)) for each in some], 0.3 + 2.4 * len(some), 1)
     return made, " ".join(each.sentence for each in some)
 
 
@@ -163,6 +159,14 @@ _NAMES = {
     "across": "position along y",
     "time": "time since the start",
 }
+
+
+def _curves(shown: Sequence[tuple[Curve | Residue, str]], height: float, columns: int) -> Figure:
+    """Curves, each with the words for its unknown input, in at most so many columns."""
+    made = style.figure(height=height)
+    for ax, each in zip(style.grid(made, len(shown), min(len(shown), columns)), shown, strict=True):
+        _curve(ax, *each)
+    return made
 
 
 def _curve(ax: Axes, one: Curve | Residue, input: str) -> None:
@@ -226,9 +230,8 @@ def _path(ax: Axes, recording: Recording, nominal: Misfit, final: Misfit) -> Non
     off = [number(1e3 * _distance(seen, one), 2) for one in (nominal, final)]
     held = ", held out" if final.held_out else ""
     ax.set_title(f"{final.recording}{held}\n{off[0]} mm off → {off[1]} mm", fontsize=9.5)
-    ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
-    ax.set_ylabel("y, m")
+    ax.set(aspect="equal", adjustable="datalim", ylabel="y, m")
     ax.tick_params(labelsize=8.5)
     ax.locator_params(nbins=5)
 
@@ -293,13 +296,8 @@ def _errors(one: ExplainedMachine) -> Figure:
                 m = level[row]
                 t = m.t - m.t[0] + start
                 off = (m.predicted - m.recorded)[:, k]
-                ax.plot(
-                    t[::every],
-                    off[::every],
-                    color=colour,
-                    lw=1.2,
-                    label=label if start == 0 else None,
-                )
+                words = label if start == 0 else None
+                ax.plot(t[::every], off[::every], color=colour, lw=1.2, label=words)
                 start = float(t[-1])
         ax.axhline(0, color=style.GREY, lw=0.8)
         ax.set(ylabel=f"{channel.name} off, {channel.unit}")
@@ -312,9 +310,5 @@ def _unknown(one: ExplainedMachine) -> Figure | None:
     curves = [c for stage in one.found.stages for c in stage.curves if c.at.size > 1]
     if not curves:
         return None
-    made = style.figure(height=2.6)
-    axes = style.grid(made, len(curves), min(len(curves), 2))
-    ports = list(one.experiment.machine.ports.values())
-    for ax, curve in zip(axes, curves, strict=True):
-        _curve(ax, curve, f"unknown, {ports[0][1]}")
-    return made
+    unit = next(iter(one.experiment.machine.ports.values()))[1]
+    return _curves([(curve, f"unknown, {unit}") for curve in curves], 2.6, 2)

@@ -63,28 +63,22 @@ def channels(axes: Sequence[Axes], recording: Recording, holes: Sequence[Gap]) -
         if not np.isfinite(y).all():
             ax.plot(*thinned(t, bridged(t, y)), color=style.PLATFORM2, lw=0.8)
         ax.plot(*thinned(t, y), color=style.INK, lw=1.1)
-        _bands(ax, channel, holes)
+        mine = [gap for gap in holes if channel in gap.channels or not gap.channels]
+        for gap in sorted(mine, key=lambda one: -one.length)[:_MOST_GAPS]:
+            ax.axvspan(gap.start, gap.end, color=style.PLATFORM2, alpha=0.25, lw=0)
         _flags(ax, recording, channel)
         ax.set(ylabel=_LABELS.get(channel, channel), xlim=(t[0], t[-1]))
         _limits(ax, y)
     axes[-1].set_xlabel("time, s")
 
 
-def _bands(ax: Axes, channel: str, holes: Sequence[Gap]) -> None:
-    mine = [gap for gap in holes if channel in gap.channels or not gap.channels]
-    for gap in sorted(mine, key=lambda one: -one.length)[:_MOST_GAPS]:
-        ax.axvspan(gap.start, gap.end, color=style.PLATFORM2, alpha=0.25, lw=0)
-
-
 def _flags(ax: Axes, recording: Recording, channel: str) -> None:
-    shown = False
     for flag, words, mark, colour in _MARKS:
         rows = np.flatnonzero(recording.flags[channel] & flag)[:2000]
         if len(rows):
             ax.plot(recording.t[rows], recording.values[channel][rows], mark, color=colour, ms=5,
                     mew=1.2, label=words)  # fmt: skip
-            shown = True
-    if shown:
+    if ax.get_legend_handles_labels()[0]:
         ax.legend(loc="upper right", ncols=2)
 
 
@@ -109,14 +103,8 @@ def folded(ax: Axes, t: Array, phi: Array, gait: Gait, fit: ClockFit | None) -> 
     dash = gait.period * _DOT
     phase = t[known] % gait.period
     x = np.stack([phase - dash, phase + dash, np.full(len(known), np.nan)], 1).ravel()
-    ax.plot(
-        x,
-        np.repeat(phi[known], 3),
-        color=style.GREY,
-        lw=2,
-        solid_capstyle="round",
-        label="recorded",
-    )
+    ax.plot(x, np.repeat(phi[known], 3), color=style.GREY, lw=2, solid_capstyle="round",
+            label="recorded")  # fmt: skip
     phase = np.linspace(0, gait.period, 400)
     ax.plot(phase, gait.angle(phase), color=style.FORWARD, lw=1.6, label="command")
     if fit is not None:
@@ -184,9 +172,8 @@ def path(ax: Axes, recording: Recording, gait: Gait | None) -> None:
         color=style.INK, width=0.005, scale=12, zorder=4,
     )  # fmt: skip
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3)
-    ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.1)
-    ax.set(xlabel="x, m", ylabel="y, m")
+    ax.set(aspect="equal", adjustable="datalim", xlabel="x, m", ylabel="y, m")
 
 
 def _mean_over(t: Array, values: Array, period: float) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 import subprocess
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
@@ -27,6 +27,7 @@ from rr_opt.motion.steady_cycle import Cycle, SteadyCycle, Trajectory
 from rr_opt.outcome import InputError, RollerRacerError
 from rr_opt.results.figures import style
 from rr_opt.results.motion import Film, SimulatedMotion
+from rr_opt.results.result import Progress
 
 if TYPE_CHECKING:
     from rr_opt.results.route import DrivenRoute
@@ -105,9 +106,8 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
         alpha = 1.0 - 0.65 * (len(chosen) - 1 - order) / max(len(chosen) - 1, 1)
         draw_robot(ax, robot, motion, i, alpha=alpha)
     _arrow(ax, robot, motion, speed, period)
-    ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.06)
-    ax.set(xlabel="x, m", ylabel="y, m")
+    ax.set(aspect="equal", adjustable="datalim", xlabel="x, m", ylabel="y, m")
 
 
 def instants(motion: Trajectory, length: float) -> list[int]:
@@ -163,7 +163,9 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
         drawn.set_dpi(_DPI)
         canvas = FigureCanvasAgg(drawn)
         ax = drawn.add_subplot()
-        _view(ax, robot, trajectory)
+        margin, x, y = 0.75 * robot_length(robot), trajectory.x, trajectory.y
+        ax.set(xlim=(x.min() - margin, x.max() + margin), xlabel="x, m", aspect="equal")
+        ax.set(ylim=(y.min() - margin, y.max() + margin), ylabel="y, m")
         canvas.draw()
         drawn.set_layout_engine("none")
         still = canvas.copy_from_bbox(drawn.bbox)
@@ -181,16 +183,6 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
                 part.remove()
 
 
-def _view(ax: Axes, robot: Robot, trajectory: Trajectory) -> None:
-    margin = 0.75 * robot_length(robot)
-    ax.set(
-        xlim=(trajectory.x.min() - margin, trajectory.x.max() + margin),
-        ylim=(trajectory.y.min() - margin, trajectory.y.max() + margin),
-    )
-    ax.set_aspect("equal")
-    ax.set(xlabel="x, m", ylabel="y, m")
-
-
 def _height(robot: Robot, trajectory: Trajectory) -> float:
     """Inches to suit the path's shape; an even number of pixels, as video needs."""
     margin = 1.5 * robot_length(robot)
@@ -198,15 +190,18 @@ def _height(robot: Robot, trajectory: Trajectory) -> float:
     return round(_DPI / 2 * min(max((_WIDTH - 0.8) * high / wide + 0.9, 2.6), 8.0)) / (_DPI / 2)
 
 
-def over_time(axes: Sequence[Axes], motion: Trajectory, rate: ArrayLike, limits: Limits) -> None:
-    """Fill four axes, top to bottom: phi (rad), its rate (rad/s), v (m/s), torque (N m)."""
+def over_time(
+    axes: Sequence[Axes], motion: Trajectory, limits: Limits, rate: ArrayLike | None = None
+) -> None:
+    """Fill the axes, top to bottom: phi (rad), its rate (rad/s) if given, v (m/s), torque (N m)."""
     t = motion.t
     against_limit(axes[0], t, motion.phi, limits.angle, "φ, rad")
-    against_limit(axes[1], t, rate, limits.rate, "dφ/dt, rad/s")
-    axes[2].plot(t, motion.v, color=style.INK)
-    axes[2].set_ylabel("v, m/s")
-    against_limit(axes[3], t, motion.torque, limits.torque, "τ, N m")
-    axes[3].set_xlabel("time, s")
+    if rate is not None:
+        against_limit(axes[1], t, rate, limits.rate, "dφ/dt, rad/s")
+    axes[-2].plot(t, motion.v, color=style.INK)
+    axes[-2].set_ylabel("v, m/s")
+    against_limit(axes[-1], t, motion.torque, limits.torque, "τ, N m")
+    axes[-1].set_xlabel("time, s")
     for ax in axes:
         ax.set_xlim(t[0], t[-1])
     axes[0].figure.align_ylabels(list(axes))  # type: ignore[union-attr]
@@ -214,7 +209,7 @@ def over_time(axes: Sequence[Axes], motion: Trajectory, rate: ArrayLike, limits:
 
 def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> None:
     """A steady cycle in four axes, and the mean of its v."""
-    over_time(axes, steady, steady.gait.rate(steady.t), limits)
+    over_time(axes, steady, limits, steady.gait.rate(steady.t))
     mean = float(steady.v[:-1].mean())
     axes[2].axhline(mean, color=style.colour_of(steady.speed), lw=1.3, ls=(0, (5, 2)))
     axes[2].margins(y=0.25)
@@ -244,23 +239,15 @@ def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label
 
 def draw_motion(motion: SimulatedMotion) -> dict[str, str]:
     """Four axes, top to bottom: path (m), phi (rad), v (m/s), torque (N m)."""
-    robot, trajectory = motion.robot, motion.trajectory
+    robot, trajectory, servo = motion.robot, motion.trajectory, motion.robot.servo
     drawn = style.figure(style.WIDTH, 8.0)
     axes = drawn.subplots(4, 1, gridspec_kw={"height_ratios": [2.4, 1, 1, 1]})
     path(axes[0], robot, trajectory, float(trajectory.v.mean()), motion.gait.period)
     axes[0].set_title("The path of P, and the robot at a few instants")
-    t = trajectory.t
-    against_limit(axes[1], t, trajectory.phi, robot.servo.angle_limit, "φ, rad")
-    axes[2].plot(t, trajectory.v, color=style.INK)
-    axes[2].set_ylabel("v, m/s")
-    against_limit(axes[3], t, trajectory.torque, robot.servo.torque_limit, "τ, N m")
-    for ax in axes[1:]:
-        ax.set_xlim(t[0], t[-1])
+    over_time(axes[1:], trajectory, Limits(servo.angle_limit, torque=servo.torque_limit))
     for ax in axes[1:3]:
         ax.sharex(axes[3])
         ax.tick_params(labelbottom=False)
-    axes[3].set_xlabel("time, s")
-    drawn.align_ylabels(list(axes[1:]))
     return {"motion": style.svg(drawn)}
 
 
@@ -271,7 +258,7 @@ def draw_route(result: DrivenRoute) -> dict[str, str]:
         return {}
     drawn = style.figure(style.WIDTH, 7.0)
     axes, driven = drawn.subplots(4, 1, sharex=True), replay.trajectory
-    over_time(axes, driven, command.at(driven.t)[1], result.plan.problem.limits)
+    over_time(axes, driven, result.plan.problem.limits, command.at(driven.t)[1])
     return {"way": style.panel(5.0, lambda ax: _way(ax, result, driven)), "drive": style.svg(drawn)}
 
 
@@ -282,8 +269,7 @@ def _way(ax: Axes, result: DrivenRoute, driven: Trajectory) -> None:
     ax.plot(driven.x, driven.y, color=style.INK, lw=1.2, label="path of P, driven")
     for i in (0, *instants(driven, robot_length(result.robot))):
         draw_robot(ax, result.robot, driven, i, alpha=0.7)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set(xlabel="x, m", ylabel="y, m")
+    ax.set(aspect="equal", adjustable="datalim", xlabel="x, m", ylabel="y, m")
     ax.legend()
 
 
@@ -301,14 +287,9 @@ def check_film(kind: Film) -> None:
 
 
 def write_film(
-    path: Path,
-    robot: Robot,
-    trajectory: Trajectory,
-    kind: Film,
-    progress: Callable[[str], None] = lambda _: None,
+    path: Path, robot: Robot, trajectory: Trajectory, kind: Film, progress: Progress
 ) -> Path:
     """Write the film, in real time; a motion too long for that is shown faster."""
-    check_film(kind)
     rate = _RATE[kind]
     count = min(max(round(rate * float(trajectory.t[-1])), 1), _MOST_FRAMES)
     chosen = np.linspace(0, len(trajectory.t) - 1, count + 1).round().astype(int)

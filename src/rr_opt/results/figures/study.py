@@ -1,8 +1,6 @@
 """The figures of a study: its varied keys as axes, maps of the speed and of the active limits."""
 
-import itertools
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 
@@ -213,10 +211,8 @@ def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
     seen = Counter(sets[case] for case in grid.cases.ravel())
     seen.pop(None, None)
     named = [name for name, _ in seen.most_common(len(_COLOURS))]
-    index = np.full(grid.cases.shape, np.nan)
-    for at, case in np.ndenumerate(grid.cases):
-        if sets[case] is not None:
-            index[at] = named.index(sets[case]) if sets[case] in named else len(named)
+    place = {None: np.nan, **{name: at for at, name in enumerate(named)}}
+    index = np.array([place.get(one, len(named)) for one in sets], float)[grid.cases]
     colours = [*_COLOURS[: len(named)], _OTHERS]
     style.hatched(ax)
     ax.pcolormesh(*grid.borders, index, cmap=ListedColormap(colours), vmin=-0.5,
@@ -301,7 +297,9 @@ def speed(ax: Axes, result: SolvedStudy, along: int) -> None:
     axes = [scale_of(axis) for axis in result.study.axes]
     mine, others = axes[along], [scale for at, scale in enumerate(axes) if at != along]
     x, left_out = mine.steps[mine.order], 0
-    lines = list(_lines(result, along, mine.order))
+    # A line for each combination of steps of the other axes.
+    grid = np.moveaxis(np.arange(len(result.rows)).reshape(result.study.shape), along, -1)
+    lines = [(fixed, grid[fixed][mine.order].tolist()) for fixed in np.ndindex(grid.shape[:-1])]
     # The first are the widest, so that coincident lines are all visible.
     widths = np.linspace(1.6 + 0.7 * min(len(lines) - 1, 5), 1.6, len(lines))
     for (fixed, cases), width in zip(lines, widths, strict=True):
@@ -328,16 +326,6 @@ def speed(ax: Axes, result: SolvedStudy, along: int) -> None:
     ax.set(ylim=(0, 1.06e3 * np.nanmax(result.speed)), ylabel="speed, mm/s")
     if others:
         _explain(ax, others[0])
-
-
-def _lines(
-    result: SolvedStudy, along: int, order: list[int]
-) -> Iterator[tuple[tuple[int, ...], list[int]]]:
-    """For each combination of the other axes: its steps there, and its cases in order."""
-    grid = np.arange(len(result.rows)).reshape(result.study.shape)
-    moved = np.moveaxis(grid, along, -1)
-    for fixed in itertools.product(*map(range, moved.shape[:-1])):
-        yield fixed, [int(case) for case in moved[fixed][order]]
 
 
 def _broken(
@@ -374,10 +362,8 @@ def _tangents(ax: Axes, result: SolvedStudy, cases: list[int], mine: Scale) -> N
 def _colour(scale: Scale, step: int) -> str:
     """The colour of a step of another axis."""
     steps = scale.steps
-    if scale.ordered:
-        norm = (LogNorm if scale.log else Normalize)(float(steps.min()), float(steps.max()))
-        return FAMILY(float(norm(steps[step])))  # type: ignore[return-value]
-    return FAMILY((steps[step] - 1) / max(len(steps) - 1, 1))  # type: ignore[return-value]
+    norm = (LogNorm if scale.log else Normalize)(float(steps.min()), float(steps.max()))
+    return FAMILY(float(norm(steps[step])))  # type: ignore[return-value]
 
 
 def _explain(ax: Axes, scale: Scale) -> None:
