@@ -111,17 +111,16 @@ _SHIFT = 0.02
 def draw(found: Reproduction) -> dict[str, str]:
     """All figures as SVG texts by name."""
     singular = found.posture.angle
-    with style.styled():
-        drawn = {
-            "figure3": start_figure(found.start),
-            "figure4": ratio_figure(found.ratio_surface, found.tables, singular),
-            "figure5": period_figure(found.period_surface, found.tables, singular),
-            "figure6": circles_figure(found.turning),
-            "signs": signs_figure(found.signs.comparison),
-            "readings": readings_figure(found.consistency),
-            "period": period_law_figure(found.period),
-        }
-        return {name: style.svg(one) for name, one in drawn.items()}
+    drawn = {
+        "figure3": start_figure(found.start),
+        "figure4": ratio_figure(found.ratio_surface, found.tables, singular),
+        "figure5": period_figure(found.period_surface, found.tables, singular),
+        "figure6": circles_figure(found.turning),
+        "signs": signs_figure(found.signs.comparison),
+        "readings": readings_figure(found.consistency),
+        "period": period_law_figure(found.period),
+    }
+    return {name: style.svg(one) for name, one in drawn.items()}
 
 
 def start_figure(start: Start) -> Figure:
