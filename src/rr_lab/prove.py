@@ -1,6 +1,6 @@
 """The blind trial of the diagnosis on sealed cases."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
@@ -34,8 +34,7 @@ class MadeCases(Result):
     folder: Path
     cases: int
 
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """As plain data."""
+    def _record(self) -> dict[str, Any]:
         return {"status": "made", "cases": self.cases, "folder": str(self.folder)}
 
     def summary(self) -> str:

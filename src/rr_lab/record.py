@@ -1,6 +1,6 @@
 """Recordings of a virtual robot: the folder of a case, and its sealed answer, kept separately."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -145,8 +145,7 @@ class Recorded(Result):
         """Which runs turn the joint further than its servo can."""
         return beyond_reach(self.case.nominal, self.case.plans)
 
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """As plain data."""
+    def _record(self) -> dict[str, Any]:
         data = {"folder": str(self.folder), "files": list(self.files)}
         return {**data, "seal": str(self.seal), "sha256": self.digest} if self.seal else data
 
