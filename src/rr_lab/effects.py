@@ -338,15 +338,6 @@ def _fault(rig: Rig, values: Values) -> None:
     rig.laws.append(Rub(values["force"] * rig.robot.h))
 
 
-def _pin(rig: Rig, values: Values) -> None:
-    """The platforms can shift relative to each other by the clearance, up to hard stops."""
-    rig.pin = values["clearance"]
-
-
-def _cable(rig: Rig, values: Values) -> None:
-    rig.cable = values["force"]
-
-
 def _load(rig: Rig, values: Values) -> None:
     rig.load = (values["mass"], values["stiffness"])
 

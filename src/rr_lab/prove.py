@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rr_lab.case import ENGINES, Engine
+from rr_lab.case import ENGINES
 from rr_lab.mujoco.plant import engine as mujoco
 from rr_lab.report import Proof, ProvedCase
 from rr_lab.trial import MADE, SAID, Trial, again, basis_of, made_row, said_row
@@ -132,10 +132,8 @@ def basis(
         word = read_seed(seed)
     # A different seed means a different trial.
     known = begun if begun and begun.seed == word else Basis(word, KINDS, ENGINES)
-    one: dict[str | None, tuple[Engine, ...]] = {"mujoco": ("mujoco",), "planar": ("planar",)}
-    found = Basis(
-        word, chosen or known.kinds, {"both": ENGINES, None: known.engines, **one}[engine]
-    )
+    engines = tuple(one for one in ENGINES if engine in (one, "both")) or known.engines
+    found = Basis(word, chosen or known.kinds, engines)
     # A missing engine is reported once, before any case.
     if "mujoco" in found.engines:
         mujoco()

@@ -66,12 +66,11 @@ def readings_figure(found: Consistency) -> Figure:
                 textcoords="offset points", ha="right", color=style.GREY)  # fmt: skip
     ax.plot([], [], "o", color=style.FORWARD, label="mean column")
     ax.plot([], [], "x", color=style.BACKWARD, mew=2, label="v_exp column")
-    ax.set_xscale("log")
     ax.set_yticks(range(len(names)), names)
-    ax.set_ylim(len(names) - 0.4, -0.9)
     ax.grid(axis="y", visible=False)
-    ax.set_xlabel("chi-square left, in standard errors of three runs")
-    ax.set_title("Nine averages cannot distinguish the readings")
+    ax.set(xscale="log", ylim=(len(names) - 0.4, -0.9),
+           xlabel="chi-square left, in standard errors of three runs",
+           title="Nine averages cannot distinguish the readings")  # fmt: skip
     ax.legend(loc="upper center", bbox_to_anchor=(0.62, 0.62))
     return drawn
 
@@ -93,10 +92,8 @@ def period_law_figure(law: PeriodLaw) -> Figure:
     ax.set_yscale("log")
     ax.set_yticks([0.5, 1, 2, 4, 8, 16], ["0.5", "1", "2", "4", "8", "16"])
     ax.minorticks_off()
-    ax.set_xlim(0.15, 0.9)
-    ax.set_xlabel("amplitude α, rad")
-    ax.set_ylabel("v(T = 1 s) / v(T = 2 s)")
-    ax.set_title("Speed over the period")
+    ax.set(xlim=(0.15, 0.9), xlabel="amplitude α, rad", ylabel="v(T = 1 s) / v(T = 2 s)",
+           title="Speed over the period")  # fmt: skip
     ax.spines["left"].set_color(style.GREY)
     ax.legend(loc="lower right")
     return drawn
@@ -141,11 +138,9 @@ def start_figure(start: Start) -> Figure:
         start.t, 1e3 * start.speed, color=style.colour_of(start.steady), label="model from rest"
     )
     speed.axhline(1e3 * abs(start.steady), color=style.INK, lw=1.0, ls=":", label="model, steady")
-    speed.set_title("Average speed over a period")
-    speed.set_xlabel("time, s")
-    speed.set_ylabel("mm/s")
-    speed.set_xlim(0, start.driven.t[-1])
-    speed.set_ylim(0, 1.1e3 * (row.mean + row.half_width))
+    speed.set(title="Average speed over a period", xlabel="time, s", ylabel="mm/s",
+              xlim=(0, start.driven.t[-1]), ylim=(0, 1.1e3 * (row.mean + row.half_width))
+    )  # fmt: skip
     gait = start.gait
     style.note(
         speed, f"α = {number(gait.amplitude)} rad, T = {number(gait.period)} s, "
@@ -175,9 +170,8 @@ def ratio_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Figu
     right.annotate("30 rpm", (limit, 0.98), xycoords=("data", "axes fraction"), color=style.LIMIT,
                    ha="right", va="top", rotation=90, fontsize=9)  # fmt: skip
     right.set_ylim(0, None)
-    right.set_xlabel("amplitude α, rad (Table 2 does not give it)")
-    right.set_ylabel("|mean speed|, mm/s")
-    right.set_title("Table 2: dot mean, cross v_exp, line model")
+    right.set(xlabel="amplitude α, rad (Table 2 does not give it)", ylabel="|mean speed|, mm/s",
+              title="Table 2: dot mean, cross v_exp, line model")  # fmt: skip
     right.legend(title="thick: within the interval", loc="lower right")
     return drawn
 
@@ -194,11 +188,9 @@ def period_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Fig
         rows = [one for one in tables.table3 if one.row.period == period]
         _cut(right, surface, rows, period, colour)
     right.set_yscale("log")
-    right.set_ylim(2, 1000)
-    right.set_xlim(0.15, surface.amplitude[-1])
-    right.set_xlabel("amplitude α, rad")
-    right.set_ylabel("|mean speed|, mm/s")
-    right.set_title("Table 3: dot mean, cross v_exp, line model")
+    right.set(xlim=(0.15, surface.amplitude[-1]), ylim=(2, 1000), xlabel="amplitude α, rad",
+              ylabel="|mean speed|, mm/s", title="Table 3: dot mean, cross v_exp, line model"
+    )  # fmt: skip
     right.legend(loc="lower right")
     return drawn
 
