@@ -412,7 +412,7 @@ def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
             effect.enter(rig, use.values)
         except KeyError as missing:
             raise InputError(
-                f"The effect {use.name} lacks its parameter {missing.args[0]}. It is needed. "
-                "Give its value."
+                f"The effect {use.name} is missing its parameter {missing.args[0]}. Expected a "
+                "value. Give one."
             ) from None
     return rig

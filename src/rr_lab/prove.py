@@ -84,8 +84,8 @@ def prove(
                     done += 1
                     progress(f"case {min(done + 1, cases)} of {cases}")
             except KeyboardInterrupt:
-                kept = f"{done} of {cases} cases are {words}"
-                raise KeyboardInterrupt(f"{kept} and kept. Repeat the command to resume.") from None
+                kept = f"{done} of {cases} cases have been {words} and are kept"
+                raise KeyboardInterrupt(f"{kept}. Repeat the command to resume.") from None
 
         follow("made and sealed", trial.make(made, partial(run, pool)), made)
         if make_only:

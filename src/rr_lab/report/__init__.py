@@ -53,10 +53,11 @@ def _with_values(name: str, values: Mapping[str, float]) -> str:
 
 
 def size_text(case: Case) -> str:
-    """Their size: `12.3 σ, 0.8 σ re-fitted`; empty if nothing is hidden."""
+    """Their size: `12.3 σ, 0.8 σ after a re-fit`; empty if nothing is hidden."""
+    truth = case.truth
     return "; ".join(
-        f"{number(case.truth.size[name], 3)} σ, {number(case.truth.remains[name], 3)} σ re-fitted"
-        for name in case.truth.hidden
+        f"{number(truth.size[name], 3)} σ, {number(truth.remains[name], 3)} σ after a re-fit"
+        for name in truth.hidden
     )
 
 
@@ -116,10 +117,10 @@ class ProvedCase(Result):
             ("disturbance", case.truth.disturbance),
             ("hidden", hidden_text(case)),
             ("size", size_text(case)),
-            ("said", said_text(case)),
+            ("diagnosis", said_text(case)),
             ("remainder", remainder_text(case)),
             ("outcome", case.outcome + ("" if case.scored else " (undetectable, not counted)")),
-            ("time", f"{case.wall:.0f} s, {case.cpu:.0f} s of CPU"),
+            ("time", f"{case.wall:.0f} s, {case.cpu:.0f} s CPU"),
             ("files", str(self.folder)),
         ]
         return "\n".join(columns([row for row in rows if row[1]])) + "\n"
@@ -233,7 +234,7 @@ class Proof(Result):
             doc.Section("", (doc.Facts(tuple(key), key=True),)),
             doc.Section("", (doc.Gallery(tuple(figures), wide=True),)),
             doc.Section("Counts",
-                (doc.table(("what", "count", SHARE, "what is counted"), counts),), brief=False),
+                (doc.table(("what", "count", SHARE, "definition"), counts),), brief=False),
             _by_engine(cases),
             _section("By effect, realisation and disturbance", "breakdown",
                 ("by", "what", "right", SHARE),
@@ -241,24 +242,25 @@ class Proof(Result):
                  for name, rate in by_name.items()]),
             _section("Coverage of the 95 % intervals", "coverage", ("quantity", "count", SHARE),
                 [(name, *_cells(rate)) for name, rate in covered.items()]),
-            _section("Held-out error, medians", "held_out",
-                ("kind", "cases", "nominal", "re-fitted", "corrected", "corrected, 90 % below"),
+            _section("Held-out error (medians)", "held_out",
+                ("kind", "cases", "nominal", "re-fitted", "corrected",
+                 "corrected, 90th percentile"),
                 [(kind, str(row["after"]["count"]),
                   *_numbers([*(of["median"] for of in row.values()), row["after"]["quantile90"]]))
                  for kind, row in statistics.held_out(cases).items()]),
             _section("Remainder", "remainder", ("kind", *SIZES, "median share"),
                 [(kind, *(str(row[size]) for size in SIZES), *_numbers([row["share"]]))
                  for kind, row in statistics.remainders(cases).items()]),
-            _section("p-values where nothing is hidden", "p_values",
+            _section("p-values with nothing hidden", "p_values",
                 ("test", "nulls", "distance", "p-value", "below 0.05"),
                 [(test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
                   str(one["below_005"])) for test, one in statistics.uniformity(cases).items()]),
-            _section("Time", "time", ("", "median", "90 % below", "most"),
+            _section("Time", "time", ("", "median", "90th percentile", "maximum"),
                 [(f"{name}, s", *_numbers(one[at] for at in ("median", "quantile90", "largest")))
                  for name, one in statistics.times(cases).items()]),
             doc.Section("Misses",
                 (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
-            doc.Section("Cases that the laboratory could not make",
+            doc.Section("Cases the laboratory could not make",
                 (doc.Facts(tuple(starmap(doc.Fact, opened.failed.items()))),)),
         )  # fmt: skip
         lead = f"{len(cases)} cases. {TEXTS['isolation']}"
@@ -301,7 +303,7 @@ def _section(
 
 def _of(one: Rate) -> str:
     """`17 of 20`."""
-    return f"{one.count} of {one.total}" if one.total else "no case"
+    return f"{one.count} of {one.total}" if one.total else "no cases"
 
 
 def _cells(one: Rate) -> tuple[str, str]:
@@ -330,7 +332,7 @@ def _by_engine(cases: Sequence[Case]) -> doc.Section:
 
 def _misses(opened: OpenedTrial, linked: bool) -> doc.Table:
     return doc.table(
-        ("case", "outcome", "engine", "hidden", "size", "said"),
+        ("case", "outcome", "engine", "hidden", "size", "diagnosis"),
         [
             (doc.Link(case.id, page_of(case)) if linked else case.id, case.outcome,
              case.truth.engine, hidden_text(case), size_text(case), said_text(case))
