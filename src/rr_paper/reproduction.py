@@ -94,8 +94,8 @@ class Reproduction(Result):
         if self.mujoco is not None:
             return ()
         return (
-            "MuJoCo is not installed, so it could not be used as a further check of the signs of "
-            "equation (3). Install it with `pip install 'rr-opt[lab]'`.",
+            "MuJoCo is not installed, so the signs of equation (3) were not checked against it. "
+            "Install it with `pip install 'rr-opt[lab]'`.",
         )
 
     def _record(self) -> dict[str, Any]:
@@ -141,9 +141,9 @@ class Reproduction(Result):
             "the paper, reproduced",
             "The paper's tables and figures recomputed, and its statements checked",
             "The tables and figures were recomputed for the shipped prototype. For "
-            f"{sum(one.within_mean for one in rows)} of {len(rows)} measured averages the model's "
-            "speed is within their interval; Table 2's amplitude and the friction were fitted to "
-            "them.",
+            f"{sum(one.within_mean for one in rows)} of {len(rows)} measured averages, the model's "
+            "speed lies within the interval; Table 2's amplitude and the friction were fitted to "
+            "these averages.",
             (
                 doc.Section("Findings", tuple(map(_sentences, audit))),
                 sections.pop("columns"),

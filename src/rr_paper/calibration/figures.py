@@ -60,7 +60,7 @@ def unknowns_figure(found: Calibration) -> Figure:
     for ax in axes[1, 1:]:
         ax.set_yticklabels([])
     axes[0, 0].set_ylabel("posterior, box = 1")
-    axes[1, 0].set_ylabel("rise of the deviance")
+    axes[1, 0].set_ylabel("rise in deviance")
     handles, labels = axes[1, 0].get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4)
     return drawn
@@ -136,7 +136,7 @@ def _prediction_panel(ax: Axes, found: Calibration, column: Column) -> None:
                         xytext=(0, 4 if y > 0 else -4), textcoords="offset points")  # fmt: skip
     ax.set_ylim(-1.2 * _EDGE, 1.2 * _EDGE)
     ax.grid(axis="x", visible=False)
-    ax.set_title(f"{_TITLES[column]}: inside the grey band is inside the 95 % interval")
+    ax.set_title(f"{_TITLES[column]} (grey band: the 95 % interval)")
 
 
 def coverage_figure(covered: Coverage) -> Figure:

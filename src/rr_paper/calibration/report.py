@@ -266,9 +266,9 @@ class Calibration(Result):
             "",
             "calibration of the paper's prototype",
             verdict(self),
-            f"Estimated from the nine measured averages of {CITATION}. Each interval there comes "
-            f"from three runs: half its width is {T_POINT:.2f} standard errors, and a row follows "
-            "Student's t with 2 degrees of freedom, not the normal distribution.",
+            f"Estimated from the nine measured averages of {CITATION}. Each of their intervals "
+            f"comes from three runs: its half width is {T_POINT:.2f} standard errors, and the row "
+            "follows Student's t with 2 degrees of freedom rather than a normal distribution.",
             (
                 gallery("unknowns"),
                 doc.Section(
@@ -276,11 +276,9 @@ class Calibration(Result):
                 ),
                 gallery("predictions"),
                 doc.Section("Models", (_model_table(self),)),
-                doc.Section(
-                    "What follows, and what does not", (*said["conclusions"], *said["shipped"])
-                ),
+                doc.Section("Conclusions", (*said["conclusions"], *said["shipped"])),
                 gallery("coverage"),
-                doc.Section("The boxes, and the reasons for them", (_box_table(),), brief=False),
+                doc.Section("The boxes and the reasons for them", (_box_table(),), brief=False),
                 doc.Section("Other readings of J20/J10", (_reading_table(self),), brief=False),
             ),
             footer=(*_sampling(self), f"rr-opt {__version__}"),
@@ -399,7 +397,10 @@ def verdict(found: Calibration) -> str:
     """The comparison of the models in a headline."""
     left_out = {key: one.left_out_deviance for key, one in found.assessments.items()}
     if all(left_out[DRY, column] < left_out[VISCOUS, column] for column in COLUMNS):
-        return "Viscous friction alone fits badly, dry friction helps; nine averages prove neither"
+        return (
+            "Viscous friction alone fits badly and dry friction helps, but nine averages prove "
+            "neither"
+        )
     return "The nine averages cannot distinguish the models"
 
 
@@ -433,7 +434,7 @@ def _interval_table(found: Calibration) -> doc.Table:
 
 def _model_table(found: Calibration) -> doc.Table:
     head = ("Model", "Measured", "Unknowns", "Deviance", "χ², normal", "Degrees of freedom", "AICc",
-            "Rows left out", "Table 3 alone: AICc")  # fmt: skip
+            "Left-out rows", "AICc, Table 3 alone")  # fmt: skip
     return doc.table(
         head,
         [
@@ -451,7 +452,7 @@ def _box_table() -> doc.Table:
         [
             (
                 f"{one.symbol}: {one.words}",
-                one.box_text + (", flat in its logarithm" * one.log),
+                one.box_text + (", flat in the logarithm" * one.log),
                 one.why,
             )
             for one in UNKNOWNS.values()
@@ -487,6 +488,6 @@ def _sampling(found: Calibration) -> tuple[str, str]:
     needed = ", ".join(number(float(rise), 2) for rise in found.coverage.rise_needed)
     return (
         f"Posteriors: {samples}",
-        f"Rises of the deviance that 95 % of the truths of {found.coverage.sets} simulated data "
-        f"sets stay below, in the order of the unknowns: {needed}",
+        f"Rise in deviance not exceeded by 95 % of the true values in {found.coverage.sets} "
+        f"simulated data sets, for each unknown in turn: {needed}",
     )
