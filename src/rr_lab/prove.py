@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rr_lab.case import ENGINES
+from rr_lab.case import ENGINES, Engine
 from rr_lab.mujoco.plant import engine as mujoco
 from rr_lab.report import Proof, ProvedCase
 from rr_lab.trial import MADE, SAID, Trial, again, basis_of, made_row, said_row
@@ -132,8 +132,8 @@ def basis(
         word = read_seed(seed)
     # A different seed means a different trial.
     known = begun if begun and begun.seed == word else Basis(word, KINDS, ENGINES)
-    engines = tuple(one for one in ENGINES if engine in (one, "both")) or known.engines
-    found = Basis(word, chosen or known.kinds, engines)
+    engines: tuple[Engine, ...] = tuple(one for one in ENGINES if engine in (one, "both"))
+    found = Basis(word, chosen or known.kinds, engines or known.engines)
     # A missing engine is reported once, before any case.
     if "mujoco" in found.engines:
         mujoco()

@@ -8,7 +8,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_paper.calibration.comparison import Assessment, assess, coverage
 from rr_paper.calibration.fit import Data, Effort, Estimator, estimator, measured
-from rr_paper.calibration.intervals import profiles, sample
+from rr_paper.calibration.intervals import Posterior, Profile, profiles, sample
 from rr_paper.calibration.models import (
     DRY,
     MODELS,
@@ -49,18 +49,18 @@ def calibrate(progress: Callable[[str], None]) -> Calibration:
     """
     work = _Work(progress, len(MODELS) * len(COLUMNS) + len(COLUMNS) + 2)
     viscous, assessments = _assess_all(work)
-    posterior = {}
+    posterior: dict[Column, Posterior] = {}
     for column in COLUMNS:
         work.begin(f"posterior, {column} column")
         posterior[column] = sample(viscous, measured(column), chains=CHAINS, sweeps=SWEEPS)
     work.begin("coverage")
     covered = coverage(viscous, posterior["mean"], measured("mean"), COVERAGE_SETS)
     work.begin("other readings of J20/J10")
-    normal = {
+    normal: dict[Column, tuple[Profile, ...]] = {
         column: profiles(viscous, measured(column), range(viscous.points.shape[1]), "normal")
         for column in COLUMNS
     }
-    shipped = {
+    shipped: dict[Column, Shipped] = {
         column: _shipped(viscous, measured(column), assessments[VISCOUS, column].student.deviance)
         for column in COLUMNS
     }

@@ -200,9 +200,13 @@ def coverage(estimator: Estimator, drawn: Posterior, data: Data, sets: int) -> C
     truth = drawn.points[draw.choice(len(drawn.points), sets, replace=False)]
     generated = simulated(estimator.predict(truth), data, draw)
     student, normal = (_rises(estimator, truth, generated, law) for law in ("student", "normal"))
-    inside = ((rise <= LEVEL).mean(axis=0) for rise in (student, normal))
-    posterior = _posterior_coverage(estimator, truth, generated, draw)
-    return Coverage(sets, posterior, *inside, np.quantile(student, 0.95, axis=0))
+    return Coverage(
+        sets,
+        _posterior_coverage(estimator, truth, generated, draw),
+        (student <= LEVEL).mean(axis=0),
+        (normal <= LEVEL).mean(axis=0),
+        np.quantile(student, 0.95, axis=0),
+    )
 
 
 def _rises(
