@@ -18,7 +18,7 @@ def record(
         Path | None,
         typer.Argument(
             metavar="[ROBOT]",
-            help="Robot file; default: the paper's prototype, or a random one with --hide.",
+            help="Robot file. Default: the paper's prototype, or with --hide a random robot.",
         ),
     ] = None,
     *,
@@ -26,17 +26,17 @@ def record(
         list[str] | None,
         typer.Option(
             metavar="RUN",
-            help="A run: '30 deg, 1.2 s, 10 deg, rest, holdout' are amplitude, period, offset, "
-            "start (rest, running) and use (fit, holdout). Repeat for more runs; default: seven "
-            "or eight random ones.",
+            help="One run: amplitude, period, offset, start (rest, running) and use (fit, "
+            "holdout), as in '30 deg, 1.2 s, 10 deg, rest, holdout'. Repeat for more runs. "
+            "Default: seven or eight random runs.",
         ),
     ] = None,
     effect: Annotated[
         list[str] | None,
         typer.Option(
             metavar="EFFECT",
-            help="Physics that the nominal robot lacks: 'coulomb_friction:force1=2 mN,force2=2 mN'."
-            " Repeat for more effects.",
+            help="Physics missing from the nominal robot, such as "
+            "'coulomb_friction:force1=2 mN,force2=2 mN'. Repeat for more effects.",
         ),
     ] = None,
     hide: Annotated[
@@ -52,47 +52,53 @@ def record(
         typer.Option(
             parser=place,
             metavar="FILE",
-            help="File for the sealed answer; its hash is written to the folder.",
+            help="Write the sealed answer to this file, and its hash to the folder.",
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Random seed; default: 0, or with --hide a new one.")
+        int | None, typer.Option(help="Random seed. Default: 0, or with --hide a new one.")
     ] = None,
     seconds: Annotated[
-        str, typer.Option(help="Length of each run in s; of random runs, the longest.")
+        str, typer.Option(help="Length of each run, s; of random runs, the maximum.")
     ] = "30",
     noise: Annotated[
         str | None,
-        typer.Option(help="Standard deviations of positions and angles.", show_default="random"),
+        typer.Option(
+            help="Standard deviations of position and angle: '1 mm, 3 mrad'.", show_default="random"
+        ),
     ] = None,
-    missing: Annotated[float, typer.Option(help="Fraction of lost samples.", min=0, max=0.9)] = 0.0,
+    missing: Annotated[
+        float, typer.Option(help="Fraction of samples to drop.", min=0, max=0.9)
+    ] = 0.0,
     disturbance: Annotated[
         str,
         typer.Option(
             metavar="NAME",
-            help="Disturb the recordings (csv): lowpass_6hz, ar1_noise, outliers, dropouts ...; "
-            "docs/lab.md lists them all.",
+            help="Disturb the recordings (csv only): lowpass_6hz, ar1_noise, outliers, "
+            "dropouts ...; docs/lab.md lists them all.",
             show_default="none",
         ),
     ] = "",
     engine: Annotated[
         Literal["mujoco", "planar"],
-        typer.Option(help="Physics engine: MuJoCo, or two bodies in the plane."),
+        typer.Option(help="Physics engine: MuJoCo (3D), or two bodies in the plane."),
     ] = "mujoco",
     form: Annotated[
         Literal["csv", "vicon", "c3d"],
-        typer.Option("--format", help="Joint and angles, or markers."),
+        typer.Option("--format", help="Joint and angles (csv), or markers (vicon, c3d)."),
     ] = "csv",
     servo_log: Annotated[
-        bool, typer.Option("--servo-log", help="Add the servo's log, on its own clock.")
+        bool, typer.Option("--servo-log", help="Also write a servo log, on its own clock.")
     ] = False,
-    torque: Annotated[bool, typer.Option("--torque", help="Add the servo's torque (csv).")] = False,
+    torque: Annotated[
+        bool, typer.Option("--torque", help="Also record the servo torque (csv only).")
+    ] = False,
     out: Annotated[Path | None, out_option("out/recorded")] = None,
     json: Summary = False,
 ) -> None:
     """Record a virtual robot.
 
-    Writes an experiment folder: experiment.yaml, and a recording for each run.
+    Writes an experiment folder: experiment.yaml and one recording per run.
     """
     with StepDisplay() as steps:
         from rr_lab.random_case import Request
@@ -116,14 +122,12 @@ def prove(
     cases: Annotated[int, typer.Option(help="Number of cases.", min=1, max=999)] = 100,
     seed: Annotated[
         str | None,
-        typer.Option(
-            metavar="HEX", help="Random seed, hexadecimal.", show_default="hash of the commit"
-        ),
+        typer.Option(metavar="HEX", help="Random seed, in hex.", show_default="hash of the commit"),
     ] = None,
     kinds: Annotated[
         str | None,
         typer.Option(
-            help="Only these: null, single, pair, parameters, outside, disturbed; or "
+            help="Only these kinds of case: null, single, pair, parameters, outside, disturbed; or "
             "single:EFFECT, pair:EFFECT+EFFECT, outside:EFFECT, disturbed:NAME.",
             show_default="all",
         ),
@@ -131,7 +135,7 @@ def prove(
     engine: Annotated[
         Literal["mujoco", "planar", "both"] | None,
         typer.Option(
-            help="Physics engine: one of the two, or each for half of each kind.",
+            help="Physics engine; with both, each drives half of the cases of a kind.",
             show_default="both",
         ),
     ] = None,
@@ -142,8 +146,8 @@ def prove(
         int | None,
         typer.Option(
             metavar="ID",
-            help="Make and diagnose only this case, of the trial in --out if there is one, and "
-            "print the answer with the diagnosis.",
+            help="Make and diagnose just this case (of the trial in --out, if there is one), and "
+            "print the answer next to the diagnosis.",
             min=1,
         ),
     ] = None,
@@ -151,17 +155,17 @@ def prove(
         bool,
         typer.Option(
             "--make-only",
-            help="Only make and seal the cases, as cases/ID and answers/ID.json; diagnose none.",
+            help="Make and seal the cases (cases/ID, answers/ID.json), but do not diagnose them.",
         ),
     ] = False,
     restart: Annotated[
-        bool, typer.Option("--restart", help="Discard the cases of an earlier run.")
+        bool, typer.Option("--restart", help="Start over, discarding the cases of an earlier run.")
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print only proof.json on stdout.")] = False,
 ) -> None:
-    """Count how often `diagnose` is right on sealed cases.
+    """Count how often `diagnose` gets sealed cases right.
 
-    The laboratory draws them. An interrupted run resumes when the same command is repeated.
+    The laboratory draws the cases at random. To resume an interrupted run, repeat the command.
     """
     with StepDisplay() as steps:
         from rr_lab import prove as trial

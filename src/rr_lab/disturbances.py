@@ -32,7 +32,7 @@ class Disturbance:
     stated: float = 1.0
 
 
-NO_DISTURBANCE = Disturbance("", "white noise of the size stated")
+NO_DISTURBANCE = Disturbance("", "white noise of the stated size")
 
 
 def _low_pass(cutoff: float) -> Distortion:
@@ -126,14 +126,16 @@ DISTURBANCES = {
     for each in (
         Disturbance("lowpass_10hz", "low-pass filtered at 10 Hz", distort=_low_pass(10.0)),
         Disturbance("lowpass_6hz", "low-pass filtered at 6 Hz", distort=_low_pass(6.0)),
-        Disturbance("ar1_noise", "noise correlated from sample to sample by 0.8", noise=_coloured),
-        Disturbance("outliers", "2 % of the samples are wild", distort=_wild),
-        Disturbance("dropouts", "20 % of the samples are lost, in gaps", distort=_gaps),
-        Disturbance("mended_swaps", "swapped markers were mended by a cubic", distort=_mended),
+        Disturbance(
+            "ar1_noise", "noise with a sample-to-sample correlation of 0.8", noise=_coloured
+        ),
+        Disturbance("outliers", "2 % of the samples are outliers", distort=_wild),
+        Disturbance("dropouts", "20 % of the samples are missing, in gaps", distort=_gaps),
+        Disturbance("mended_swaps", "swapped markers were repaired with a cubic", distort=_mended),
         Disturbance("coarse_angles", "angles in steps of 3 mrad", distort=_coarse),
         Disturbance("clock_drift", "the recording's clock is 1 % fast", clock=1.01),
-        Disturbance("noise_understated", "half of the true noise is stated", stated=0.5),
-        Disturbance("noise_overstated", "twice the true noise is stated", stated=2.0),
+        Disturbance("noise_understated", "the stated noise is half the true noise", stated=0.5),
+        Disturbance("noise_overstated", "the stated noise is twice the true noise", stated=2.0),
     )
 }
 

@@ -338,15 +338,6 @@ def _fault(rig: Rig, values: Values) -> None:
     rig.laws.append(Rub(values["force"] * rig.robot.h))
 
 
-def _pin(rig: Rig, values: Values) -> None:
-    """The platforms can shift relative to each other by the clearance, up to hard stops."""
-    rig.pin = values["clearance"]
-
-
-def _cable(rig: Rig, values: Values) -> None:
-    rig.cable = values["force"]
-
-
 def _load(rig: Rig, values: Values) -> None:
     rig.load = (values["mass"], values["stiffness"])
 
@@ -421,7 +412,7 @@ def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
             effect.enter(rig, use.values)
         except KeyError as missing:
             raise InputError(
-                f"The effect {use.name} lacks its parameter {missing.args[0]}. It is needed. "
-                "Give its value."
+                f"The effect {use.name} is missing its parameter {missing.args[0]}. Expected a "
+                "value. Give one."
             ) from None
     return rig

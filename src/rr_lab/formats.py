@@ -123,8 +123,8 @@ def c3d_bytes(markers: MarkerData) -> bytes:
         import ezc3d  # an extra
     except ImportError:
         raise InputError(
-            "C3D cannot be written: the package ezc3d is not installed. Expected it. Install it "
-            "with: pip install 'rr-opt[lab]', or take another format."
+            "Cannot write C3D: the package ezc3d is not installed. Install it with: pip install "
+            "'rr-opt[lab]', or choose another format."
         ) from None
     file: Any = ezc3d.c3d()
     file["parameters"]["POINT"]["RATE"]["value"] = [markers.rate]

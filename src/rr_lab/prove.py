@@ -1,6 +1,6 @@
 """The blind trial of the diagnosis on sealed cases."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
@@ -34,8 +34,7 @@ class MadeCases(Result):
     folder: Path
     cases: int
 
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """As plain data."""
+    def _record(self) -> dict[str, Any]:
         return {"status": "made", "cases": self.cases, "folder": str(self.folder)}
 
     def summary(self) -> str:
@@ -85,8 +84,8 @@ def prove(
                     done += 1
                     progress(f"case {min(done + 1, cases)} of {cases}")
             except KeyboardInterrupt:
-                kept = f"{done} of {cases} cases are {words}"
-                raise KeyboardInterrupt(f"{kept} and kept. Repeat the command to resume.") from None
+                kept = f"{done} of {cases} cases have been {words} and are kept"
+                raise KeyboardInterrupt(f"{kept}. Repeat the command to resume.") from None
 
         follow("made and sealed", trial.make(made, partial(run, pool)), made)
         if make_only:
@@ -133,10 +132,8 @@ def basis(
         word = read_seed(seed)
     # A different seed means a different trial.
     known = begun if begun and begun.seed == word else Basis(word, KINDS, ENGINES)
-    one: dict[str | None, tuple[Engine, ...]] = {"mujoco": ("mujoco",), "planar": ("planar",)}
-    found = Basis(
-        word, chosen or known.kinds, {"both": ENGINES, None: known.engines, **one}[engine]
-    )
+    engines: tuple[Engine, ...] = tuple(one for one in ENGINES if engine in (one, "both"))
+    found = Basis(word, chosen or known.kinds, engines or known.engines)
     # A missing engine is reported once, before any case.
     if "mujoco" in found.engines:
         mujoco()

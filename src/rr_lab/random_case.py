@@ -314,8 +314,8 @@ def read_kind(kind: str, seed: int = 0) -> tuple[str, tuple[str, ...]]:
     for name in names:
         if effect_named(name).named != (head != "outside"):
             raise InputError(
-                f"The kind of case {kind!r} does not go with its effect. Expected single or pair "
-                f"for an effect of the catalogue ({', '.join(NAMED)}), and outside for another one "
+                f"The kind of case {kind!r} does not match its effect. Expected single or pair "
+                f"for an effect in the catalogue ({', '.join(NAMED)}), outside for any other "
                 f"({', '.join(OUTSIDE_NAMES)}). Correct it."
             )
     return head, names

@@ -1,6 +1,6 @@
 """Recordings of a virtual robot: the folder of a case, and its sealed answer, kept separately."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,8 +44,9 @@ def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
         use: Any = next((word for word in words if word in USES), "fit")
         if len(sizes) not in (2, 3):
             wrong.append(
-                f"--gait: Read {text!r}. Expected amplitude, period and offset, and rest, running, "
-                "fit or holdout. Write for example '30 deg, 1.2 s, 0, rest, holdout'."
+                f"--gait: Read {text!r}. Expected an amplitude, a period, an optional offset, "
+                "and any of rest, running, fit and holdout. Write, for example, "
+                "'30 deg, 1.2 s, 0, rest, holdout'."
             )
             continue
         named = zip(("amplitude", "period", "offset"), sizes, strict=False)
@@ -67,9 +68,9 @@ def beyond_reach(robot: Robot, plans: Iterable[Plan]) -> tuple[str, ...]:
     """A warning for each run that turns the joint further than its servo can."""
     angle, limit = QUANTITIES["angle"], robot.servo.angle_limit
     return tuple(
-        f"{plan.name} goes to {angle.both(plan.gait.peak_angle)}, and the servo's limit "
-        f"is {angle.both(limit)}. It is recorded as if the servo could. Plain numbers are radians: "
-        "write `30 deg` for degrees."
+        f"{plan.name} reaches {angle.both(plan.gait.peak_angle)}, beyond the servo's limit of "
+        f"{angle.both(limit)}. It is recorded as if the servo could reach it. Plain numbers are "
+        "radians; for degrees write `30 deg`."
         for plan in plans
         if plan.gait.peak_angle > limit
     )
@@ -87,7 +88,7 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
             if key not in effect.accepted:
                 wrong.append(
                     f"--effect {name}: Read {part!r}. Expected {' or '.join(effect.accepted)}. "
-                    f"Write for example `{first.name}=VALUE`."
+                    f"Write, for example, `{first.name}=VALUE`."
                 )
                 continue
             try:
@@ -96,8 +97,8 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
                 wrong.append(f"--effect {name}, {key}: {error}")
         if not rest.strip():
             wrong.append(
-                f"--effect {name}: Read no value, and without one it does nothing. Write for "
-                f"example `{effect.name}:{first.name}={_quantity(first).example}`."
+                f"--effect {name}: Read no value; without one it does nothing. Write, for "
+                f"example, `{effect.name}:{first.name}={_quantity(first).example}`."
             )
         uses.append(EffectUse(name.strip(), values))
     if wrong:
@@ -117,8 +118,8 @@ def read_noise(text: str) -> Noise:
     parts = text.split(",")
     if len(parts) != 2:
         raise InputError(
-            f"--noise: Read {text!r}. Expected that of positions and that of angles. Write for "
-            "example '1 mm, 3 mrad'."
+            f"--noise: Read {text!r}. Expected one standard deviation for positions and one for "
+            "angles. Write, for example, '1 mm, 3 mrad'."
         )
     return Noise(
         Number("m", "1 mm", above=0).read(parts[0].strip()),
@@ -145,8 +146,7 @@ class Recorded(Result):
         """Which runs turn the joint further than its servo can."""
         return beyond_reach(self.case.nominal, self.case.plans)
 
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """As plain data."""
+    def _record(self) -> dict[str, Any]:
         data = {"folder": str(self.folder), "files": list(self.files)}
         return {**data, "seal": str(self.seal), "sha256": self.digest} if self.seal else data
 
@@ -178,17 +178,17 @@ def record(
     """
     if request.kind and (request.effects or seal is None):
         raise InputError(
-            "--hide draws what is hidden and seals the answer. Expected --seal FILE with it, "
-            "and no --effect. Add the one, or leave out the other."
+            "--hide draws the hidden physics and seals the answer. Expected --seal FILE, and no "
+            "--effect. Add --seal, and drop --effect."
         )
     for option, given, why in (
-        ("--torque", torque, "which has no place for it"),
-        ("--disturbance", request.disturbance, "whose markers it does not know"),
+        ("--torque", torque, "which cannot store it"),
+        ("--disturbance", request.disturbance, "which it does not support"),
     ):
         if given and form != "csv":
             raise InputError(
-                f"{option} came with --format {form}, {why}. Expected --format csv. Leave one of "
-                "them out."
+                f"{option} was given with --format {form}, {why}. Expected --format csv. Leave "
+                "out one of the two."
             )
     folder = folder_for_results(Path(folder))
     _require_apart(folder, seal)
@@ -214,8 +214,8 @@ def _require_apart(folder: Path, seal: Path | None) -> None:
     """Raise InputError if the answer cannot be written, or would be among the recordings."""
     if seal is not None and file_for_result(seal).resolve().is_relative_to(folder.resolve()):
         raise InputError(
-            f"The seal {seal} lies in the folder of the recordings. Expected a place outside it. "
-            "Give another place with --seal."
+            f"The seal {seal} is inside the folder of the recordings. Expected a file outside it. "
+            "Give another one with --seal."
         )
 
 
@@ -224,6 +224,6 @@ def _require_own(folder: Path) -> None:
     file = folder / EXPERIMENT
     if file.is_file() and not is_own(file.read_bytes()):
         raise InputError(
-            f"{file} was not written by `rr-opt record`, or changed since, and would be written "
-            "over. Give another place with --out, or delete it."
+            f"{file} was not written by `rr-opt record`, or has been edited since, and would be "
+            "overwritten. Give another folder with --out, or delete it."
         )

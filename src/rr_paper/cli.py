@@ -13,8 +13,8 @@ def calibrate(
 ) -> None:
     """Estimate the prototype's unpublished parameters.
 
-    Uses the nine averages of Tables 2 and 3, for both readings of their columns, compares models,
-    and shows which unknowns the averages do not identify. Takes two to three minutes.
+    Fits the nine averages of Tables 2 and 3 under both readings of their columns, compares models,
+    and shows which unknowns the averages cannot identify. Takes two to three minutes.
     """
     with StepDisplay() as steps:
         steps("starting")
@@ -32,7 +32,7 @@ def reproduce(
 ) -> None:
     """Recompute the paper's tables and figures.
 
-    Also checks its statements. Takes about a minute. The robot is the shipped prototype.
+    Also checks its statements. Uses the shipped prototype, and takes about a minute.
     """
     with StepDisplay() as steps:
         steps("reading")

@@ -62,16 +62,15 @@ def readings_figure(found: Consistency) -> Figure:
                 ax.annotate(f"p {one.p:.2g}", (one.fit.chi2, place), (0, shift), fontsize=7.5,
                             textcoords="offset points", ha="center", color=colour)  # fmt: skip
     ax.axvline(found.still["mean"], color=style.GREY, lw=1.0, ls=":")
-    ax.annotate("a robot that stands still", (found.still["mean"], -0.6), (-4, 0), fontsize=8.5,
+    ax.annotate("a robot that does not move", (found.still["mean"], -0.6), (-4, 0), fontsize=8.5,
                 textcoords="offset points", ha="right", color=style.GREY)  # fmt: skip
     ax.plot([], [], "o", color=style.FORWARD, label="mean column")
     ax.plot([], [], "x", color=style.BACKWARD, mew=2, label="v_exp column")
-    ax.set_xscale("log")
     ax.set_yticks(range(len(names)), names)
-    ax.set_ylim(len(names) - 0.4, -0.9)
     ax.grid(axis="y", visible=False)
-    ax.set_xlabel("chi-square left, in standard errors of three runs")
-    ax.set_title("Nine averages cannot distinguish the readings")
+    ax.set(xscale="log", ylim=(len(names) - 0.4, -0.9),
+           xlabel="remaining chi-square, in standard errors from three runs",
+           title="The nine averages cannot tell the readings apart")  # fmt: skip
     ax.legend(loc="upper center", bbox_to_anchor=(0.62, 0.62))
     return drawn
 
@@ -83,7 +82,7 @@ def period_law_figure(law: PeriodLaw) -> Figure:
     viscous = law.spreads[0]
     ax.axhspan(viscous.q05, viscous.q95, color=style.FORWARD, alpha=0.25, lw=0,
                label="viscous friction, 90 % of robots")  # fmt: skip
-    ax.axhline(viscous.largest, color=style.FORWARD, lw=0.9, ls=":", label="the largest of them")
+    ax.axhline(viscous.largest, color=style.FORWARD, lw=0.9, ls=":", label="the largest of these")
     for i, one in enumerate(law.ratios):
         ax.plot([one.amplitude] * 2, [one.low, one.high], color=style.INK, lw=1.4,
                 label="mean column, 95 %" if i == 0 else None)  # fmt: skip
@@ -93,10 +92,8 @@ def period_law_figure(law: PeriodLaw) -> Figure:
     ax.set_yscale("log")
     ax.set_yticks([0.5, 1, 2, 4, 8, 16], ["0.5", "1", "2", "4", "8", "16"])
     ax.minorticks_off()
-    ax.set_xlim(0.15, 0.9)
-    ax.set_xlabel("amplitude α, rad")
-    ax.set_ylabel("v(T = 1 s) / v(T = 2 s)")
-    ax.set_title("Speed over the period")
+    ax.set(xlim=(0.15, 0.9), xlabel="amplitude α, rad", ylabel="v(T = 1 s) / v(T = 2 s)",
+           title="Speed against period")  # fmt: skip
     ax.spines["left"].set_color(style.GREY)
     ax.legend(loc="lower right")
     return drawn
@@ -111,17 +108,16 @@ _SHIFT = 0.02
 def draw(found: Reproduction) -> dict[str, str]:
     """All figures as SVG texts by name."""
     singular = found.posture.angle
-    with style.styled():
-        drawn = {
-            "figure3": start_figure(found.start),
-            "figure4": ratio_figure(found.ratio_surface, found.tables, singular),
-            "figure5": period_figure(found.period_surface, found.tables, singular),
-            "figure6": circles_figure(found.turning),
-            "signs": signs_figure(found.signs.comparison),
-            "readings": readings_figure(found.consistency),
-            "period": period_law_figure(found.period),
-        }
-        return {name: style.svg(one) for name, one in drawn.items()}
+    drawn = {
+        "figure3": start_figure(found.start),
+        "figure4": ratio_figure(found.ratio_surface, found.tables, singular),
+        "figure5": period_figure(found.period_surface, found.tables, singular),
+        "figure6": circles_figure(found.turning),
+        "signs": signs_figure(found.signs.comparison),
+        "readings": readings_figure(found.consistency),
+        "period": period_law_figure(found.period),
+    }
+    return {name: style.svg(one) for name, one in drawn.items()}
 
 
 def start_figure(start: Start) -> Figure:
@@ -142,15 +138,13 @@ def start_figure(start: Start) -> Figure:
         start.t, 1e3 * start.speed, color=style.colour_of(start.steady), label="model from rest"
     )
     speed.axhline(1e3 * abs(start.steady), color=style.INK, lw=1.0, ls=":", label="model, steady")
-    speed.set_title("Average speed over a period")
-    speed.set_xlabel("time, s")
-    speed.set_ylabel("mm/s")
-    speed.set_xlim(0, start.driven.t[-1])
-    speed.set_ylim(0, 1.1e3 * (row.mean + row.half_width))
+    speed.set(title="Average speed over a period", xlabel="time, s", ylabel="mm/s",
+              xlim=(0, start.driven.t[-1]), ylim=(0, 1.1e3 * (row.mean + row.half_width))
+    )  # fmt: skip
     gait = start.gait
     style.note(
         speed, f"α = {number(gait.amplitude)} rad, T = {number(gait.period)} s, "
-        f"J20/J10 = {number(row.ratio)}; the paper does not give Fig. 3's", y=0.06, va="bottom",
+        f"J20/J10 = {number(row.ratio)}; the paper gives none for Fig. 3", y=0.06, va="bottom",
     )  # fmt: skip
     speed.legend(loc="lower right", bbox_to_anchor=(1.0, 0.14))
     return drawn
@@ -176,9 +170,8 @@ def ratio_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Figu
     right.annotate("30 rpm", (limit, 0.98), xycoords=("data", "axes fraction"), color=style.LIMIT,
                    ha="right", va="top", rotation=90, fontsize=9)  # fmt: skip
     right.set_ylim(0, None)
-    right.set_xlabel("amplitude α, rad (Table 2 does not give it)")
-    right.set_ylabel("|mean speed|, mm/s")
-    right.set_title("Table 2: dot mean, cross v_exp, line model")
+    right.set(xlabel="amplitude α, rad (not given in Table 2)", ylabel="|mean speed|, mm/s",
+              title="Table 2: dots mean, crosses v_exp, lines model")  # fmt: skip
     right.legend(title="thick: within the interval", loc="lower right")
     return drawn
 
@@ -195,11 +188,9 @@ def period_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Fig
         rows = [one for one in tables.table3 if one.row.period == period]
         _cut(right, surface, rows, period, colour)
     right.set_yscale("log")
-    right.set_ylim(2, 1000)
-    right.set_xlim(0.15, surface.amplitude[-1])
-    right.set_xlabel("amplitude α, rad")
-    right.set_ylabel("|mean speed|, mm/s")
-    right.set_title("Table 3: dot mean, cross v_exp, line model")
+    right.set(xlim=(0.15, surface.amplitude[-1]), ylim=(2, 1000), xlabel="amplitude α, rad",
+              ylabel="|mean speed|, mm/s", title="Table 3: dots mean, crosses v_exp, lines model"
+    )  # fmt: skip
     right.legend(loc="lower right")
     return drawn
 
@@ -225,13 +216,13 @@ def _speed_map(ax: Axes, surface: SpeedSurface, across: Array, singular: float) 
         ax.contour(across, alpha, rate, levels=[RATE_LIMIT], colors=[style.LIMIT], linewidths=1.6,
                    zorder=4)  # fmt: skip
     bar = ax.figure.colorbar(fill, ax=ax, pad=0.02, aspect=30, ticks=MaxNLocator(7))
-    bar.set_label("mean speed, mm/s  (− platform 2 leads)")
+    bar.set_label("mean speed, mm/s  (−: platform 2 leads)")
     bar.outline.set_visible(False)  # type: ignore[operator]
     ax.grid(False)
-    ax.set(ylabel="amplitude α, rad", title="Hatched: beyond 30 rpm")
+    ax.set(ylabel="amplitude α, rad", title="Hatched: above 30 rpm")
     ax.annotate(
-        f"{number(singular, 3)} rad, singular posture, and {number(ANGLE_LIMIT)} rad, the servo's "
-        "limit, are above the plot", (0, -0.2), xycoords="axes fraction", fontsize=8.5,
+        f"Above the plot: singular posture at {number(singular, 3)} rad, servo limit at "
+        f"{number(ANGLE_LIMIT)} rad", (0, -0.2), xycoords="axes fraction", fontsize=8.5,
         color=style.GREY,
     )  # fmt: skip
     return norm
@@ -274,7 +265,7 @@ def _cut(
     label = f"T = {number(period)} s"
     ax.plot(alpha, np.where(kept, speed, np.nan), color=colour, label=label)
     ax.plot(alpha, np.where(kept, np.nan, speed), color=colour, ls=(0, (3, 2)),
-            label=f"{label}, beyond 30 rpm" if not kept.all() else None)  # fmt: skip
+            label=f"{label}, above 30 rpm" if not kept.all() else None)  # fmt: skip
     for one in rows:
         _printed_row(ax, one.amplitude, one.row, colour)
     ax.axvline(RATE_LIMIT * period / (2 * np.pi), color=style.LIMIT, lw=0.8, ls=":")

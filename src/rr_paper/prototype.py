@@ -88,8 +88,8 @@ def _by_inertia(name: str, parts: Callable[[Robot], tuple[float, float, float]])
         inertia = (ratio * bottom - top) / (1 - share * ratio)
         if inertia <= 0:
             raise InputError(
-                f"The ratio needs I2 = {inertia:.3g} kg m2. It must be positive. Ask for a larger "
-                "one."
+                f"The ratio needs I2 = {inertia:.3g} kg m2. Expected a positive value. Ask for a "
+                "larger ratio."
             )
         return replace(robot, platform2=replace(robot.platform2, I=inertia))
 

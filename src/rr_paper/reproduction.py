@@ -18,24 +18,11 @@ from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Result
-from rr_paper import publication
+from rr_paper import publication, statements
 from rr_paper.consistency import KAPPA, LARGEST_WHEEL, Consistency, Hypothesis, audit_hypotheses
 from rr_paper.prototype import ABOUT_P, BOX, UNITS, Sensitivity, sensitivities
 from rr_paper.publication import CITATION, RATE_LIMIT, TABLE_3, captions
 from rr_paper.signs import SignAudit, audit_signs
-from rr_paper.statements import (
-    BestAmplitude,
-    Peak,
-    PeriodLaw,
-    ServoDemand,
-    SingularPosture,
-    Turning,
-    audit_best_amplitude,
-    audit_period,
-    audit_turning,
-    servo_demands,
-    singular_posture,
-)
 from rr_paper.tables import (
     SpeedSurface,
     Start,
@@ -49,10 +36,7 @@ from rr_paper.tables import (
 _TYPICAL = TABLE_3[1]
 """The row that is driven if the paper does not say which run it shows."""
 
-
 _SECONDS = 10.0
-
-
 _SETTLED = 20.0
 """Time after which a run from rest is steady, s."""
 
@@ -78,14 +62,14 @@ class Reproduction(Result):
     start: Start
     ratio_surface: SpeedSurface
     period_surface: SpeedSurface
-    turning: Turning
+    turning: statements.Turning
     signs: SignAudit
     sensitivities: tuple[Sensitivity, ...]
     consistency: Consistency
-    demands: tuple[ServoDemand, ...]
-    posture: SingularPosture
-    period: PeriodLaw
-    best: BestAmplitude
+    demands: tuple[statements.ServoDemand, ...]
+    posture: statements.SingularPosture
+    period: statements.PeriodLaw
+    best: statements.BestAmplitude
     mujoco: float | None
 
     @property
@@ -94,8 +78,8 @@ class Reproduction(Result):
         if self.mujoco is not None:
             return ()
         return (
-            "MuJoCo is not installed, so it could not be used as a further check of the signs of "
-            "equation (3). Install it with `pip install 'rr-opt[lab]'`.",
+            "MuJoCo is not installed, so the signs of equation (3) were not checked against it. "
+            "Install it with `pip install 'rr-opt[lab]'`.",
         )
 
     def _record(self) -> dict[str, Any]:
@@ -141,9 +125,9 @@ class Reproduction(Result):
             "the paper, reproduced",
             "The paper's tables and figures recomputed, and its statements checked",
             "The tables and figures were recomputed for the shipped prototype. For "
-            f"{sum(one.within_mean for one in rows)} of {len(rows)} measured averages the model's "
-            "speed is within their interval; Table 2's amplitude and the friction were fitted to "
-            "them.",
+            f"{sum(one.within_mean for one in rows)} of {len(rows)} measured averages, the model's "
+            "speed lies within the interval; Table 2's amplitude and the friction were fitted to "
+            "these averages.",
             (
                 doc.Section("Findings", tuple(map(_sentences, audit))),
                 sections.pop("columns"),
@@ -167,20 +151,20 @@ def reproduce(problem: Problem, progress: Callable[[str], None]) -> Reproduction
     start = start_from_rest(loaded, _TYPICAL, gait)
     progress("Figs. 4 and 5")
     surfaces = figure4(robot), figure5(robot)
-    progress("Fig. 6 and its claim")
-    turning = audit_turning(problem)
+    progress("Fig. 6 and its claims")
+    turning = statements.audit_turning(problem)
     progress("signs of equation (3)")
     signs = audit_signs(loaded, gait, _SECONDS)
     consistency = audit_hypotheses(progress)
-    progress("speed over the period")
-    period = audit_period(robot)
+    progress("speed against period")
+    period = statements.audit_period(robot)
     fits = [*consistency.of("ratio", "mean"), *consistency.of("equation", "mean")]
-    best = audit_best_amplitude(robot, fits, progress)
+    best = statements.audit_best_amplitude(robot, fits, progress)
     progress("MuJoCo")
     return Reproduction(
         problem.sha256, robot, tables, start, *surfaces, turning, signs,
-        sensitivities(robot, _TYPICAL), consistency, servo_demands(tables.amplitude),
-        singular_posture(robot), period, best, mujoco_speed(loaded, gait),
+        sensitivities(robot, _TYPICAL), consistency, statements.servo_demands(tables.amplitude),
+        statements.singular_posture(robot), period, best, mujoco_speed(loaded, gait),
     )  # fmt: skip
 
 
@@ -359,7 +343,7 @@ def _audit_tables(found: Reproduction) -> dict[str, doc.Table]:
     }  # fmt: skip
 
 
-def _peak(peak: Peak) -> tuple[doc.Cell, ...]:
+def _peak(peak: statements.Peak) -> tuple[doc.Cell, ...]:
     return peak.amplitude, "yes" if peak.inside else "end of range", peak.reverses
 
 

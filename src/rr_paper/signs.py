@@ -24,8 +24,6 @@ from rr_opt.motion.rollout import rollout
 from rr_opt.verify.fourier import integral, solve
 from rr_paper import two_bodies
 
-_TIGHT = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-11}
-
 
 @dataclass(frozen=True)
 class Signs:
@@ -172,7 +170,7 @@ def path(robot: Robot, gait: SineGait, times: Array, signs: Signs) -> Array:
         vdot = float(along.slope * v + along.drive)
         return [vdot, w, v * cos + c1 * w * sin, v * sin - c1 * w * cos]
 
-    return solve_ivp(slope, times[[0, -1]], np.zeros(4), t_eval=times, **_TIGHT).y
+    return solve_ivp(slope, times[[0, -1]], np.zeros(4), t_eval=times, **two_bodies.TIGHT).y
 
 
 _STATES, _SEED = 200, 7

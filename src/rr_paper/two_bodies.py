@@ -114,7 +114,8 @@ def axes(angle: float | Array) -> tuple[Array, Array]:
     return np.array([cos, sin]), np.array([-sin, cos])
 
 
-_TIGHT = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-11}
+TIGHT = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-11}
+"""Settings of an accurate integration."""
 
 
 class Path(NamedTuple):
@@ -139,7 +140,7 @@ def path(robot: Robot, gait: Gait, times: Array) -> Path:
         return np.concatenate([state[6:], qdd])
 
     start = np.concatenate([q, qd])
-    states = solve_ivp(slope, times[[0, -1]], start, t_eval=times, **_TIGHT).y
+    states = solve_ivp(slope, times[[0, -1]], start, t_eval=times, **TIGHT).y
     one, two = robot.platform1, robot.platform2
     (e1, _), (e2, _) = axes(states[2]), axes(states[5])
     joint = states[:2] - (one.c - one.a) * e1

@@ -97,12 +97,12 @@ def test_json_stands_alone(run):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("--gait", "30 deg"), "Expected amplitude, period"),
+        (("--gait", "30 deg"), "Expected an amplitude, a period"),
         (("--gait", "30 deg, 1.2 kg"), "--period"),
         (("--effect", "gremlins"), "cannot hide"),
         (("--disturbance", "rain"), "no disturbance 'rain'"),
         (("--disturbance", "outliers", "--format", "vicon"), "Expected --format csv"),
-        (("--effect", "floor_patch:multiplier=2"), "lacks its parameter edge_x"),
+        (("--effect", "floor_patch:multiplier=2"), "is missing its parameter edge_x"),
         (("--effect", "servo_lag:tau=3 kg"), "--effect servo_lag, tau"),
         (("--effect", "servo_lag:width=3"), "Expected tau"),
         (("--noise", "1 mm"), "--noise"),
@@ -130,7 +130,7 @@ def test_what_record_did_not_write_is_kept(run, recorded, tmp_path):
         file.write_text(mine)
         reported = run(*again)
         assert reported.exit_code == 2
-        assert "was not written by `rr-opt record`, or changed since" in reported.stderr
+        assert "was not written by `rr-opt record`, or has been edited since" in reported.stderr
         assert file.read_text() == mine
 
 
@@ -152,7 +152,7 @@ def test_an_effect_that_is_none(run, tmp_path, use, said):
 def test_degrees_for_radians(run):
     reported = run("record", "--gait", "30, 1.2", "--seconds", "1", "--engine", "planar")
     assert reported.exit_code == 0
-    assert "run01.csv goes to" in reported.stderr
+    assert "run01.csv reaches" in reported.stderr
     assert "write `30 deg`" in reported.stderr
     right = run("record", "--gait", "30 deg, 1.2", "--seconds", "1", "--engine", "planar")
     assert "warning" not in right.stderr

@@ -21,13 +21,13 @@ def test_mujoco_is_missing(monkeypatch):
 
 def test_simulation_breaks_down(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(NotConvergedError, match="broke down"):
+    with pytest.raises(NotConvergedError, match="diverged"):
         record(LONG, GAIT, 1.0, effects=[EffectUse("compliant_platform", {"give": 1e-9})])
     assert list(tmp_path.iterdir()) == []
 
 
 def test_planar_motion_is_lost():
-    with pytest.raises(NotConvergedError, match="broke down"):
+    with pytest.raises(NotConvergedError, match="diverged"):
         record(LONG, SineGait(100.0, 0.01), 1.0, engine="planar")
 
 
@@ -35,7 +35,7 @@ def test_planar_motion_is_lost():
     ("name", "values", "expected"),
     [
         ("gremlins", {}, "cannot hide"),
-        ("servo_lag", {}, "lacks its parameter tau"),
+        ("servo_lag", {}, "is missing its parameter tau"),
         ("servo_lag", {"tau": 0.1, "width": 1.0}, "no parameter width"),
     ],
 )

@@ -82,5 +82,5 @@ def test_a_motion_lost_before_the_recording_is_told(start, law):
     rig.shapers.append(lambda t, angle: np.where(np.arange(len(t)) == 10, 1e9, angle))
     if law:
         rig.laws.append(law)
-    with pytest.raises(NotConvergedError, match="broke down"):
+    with pytest.raises(NotConvergedError, match="diverged"):
         drive(rig, GAIT, Conditions(0.2, start), 1e-3)

@@ -142,5 +142,5 @@ def test_wrong_kinds(text):
     ],
 )
 def test_wrong_effects(text):
-    with pytest.raises(InputError, match=r"laboratory|does not go with"):
+    with pytest.raises(InputError, match=r"laboratory|does not match"):
         read_kinds(text)

@@ -41,13 +41,15 @@ def test_results_are_no_change_of_the_code(tree):
 @pytest.mark.parametrize("file", ["src/code.py", "src/new.py", "outside.txt"])
 def test_a_change_is_refused(tree, file):
     (tree / file).write_text("two = 2\n")
-    with pytest.raises(InputError, match=r"in no commit: .*Expected .*Commit the changes, or give"):
+    with pytest.raises(
+        InputError, match=r"uncommitted changes: .*Expected .*Commit the changes, or give"
+    ):
         seed_of_commit(tree / "src", tree / "out")
 
 
 def test_without_a_commit_it_is_refused(tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
-    with pytest.raises(InputError, match=r"no git repository.*Expected a commit.*--seed"):
+    with pytest.raises(InputError, match=r"not in a git repository.*Expected a commit.*--seed"):
         seed_of_commit(tmp_path, tmp_path / "out")
 
 

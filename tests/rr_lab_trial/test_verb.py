@@ -24,7 +24,7 @@ def stub(task):
     ("words", "told"),
     [
         (["--seed", "xyz"], "--seed: Read 'xyz'. Expected hexadecimal digits"),
-        (["--seed", "1", "--kinds", "odd"], "--kinds: Read 'odd'. Expected some of null"),
+        (["--seed", "1", "--kinds", "odd"], "--kinds: Read 'odd'. Expected one or more of null"),
         (["--seed", "1", "--scheduler", "nowhere"], "No dask scheduler answers at 'nowhere'"),
     ],
 )
@@ -56,7 +56,7 @@ def test_one_case_again_tells_what_was_hidden_and_what_was_said(tmp_path, monkey
     words = ["prove", "--case", "2", "--out", str(tmp_path), "--seed", "5eed", "--kinds", "null"]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.output
-    for line in ("hidden  nothing", "said    consistent", "outcome  right"):
+    for line in ("hidden  nothing", "diagnosis    consistent", "outcome  right"):
         assert line.split() in [told.split() for told in done.stdout.splitlines()]
     again = tmp_path / "again" / "002"
     found = {str(path.relative_to(again)) for path in again.rglob("*") if path.is_file()}

@@ -172,7 +172,7 @@ def engine() -> Any:
     except ImportError:
         raise InputError(
             "The virtual laboratory has no engine: MuJoCo is not installed. Expected the package "
-            "mujoco. Install it with: pip install 'rr-opt[lab]', or take the engine planar."
+            "mujoco. Install it with: pip install 'rr-opt[lab]', or use the planar engine."
         ) from None
     # Its warnings would go to a file in the working folder; `Plant.require_sound` checks for them.
     mujoco.set_mju_user_warning(_silent)
@@ -300,8 +300,8 @@ class Plant:
         """Raises NotConvergedError if MuJoCo's simulation failed."""
         if self.data.warning.number.any():
             raise NotConvergedError(
-                "The laboratory's simulation broke down: MuJoCo met huge accelerations. Expected a "
-                "motion. Take a gentler gait, a weaker effect or a smaller step."
+                "The laboratory's simulation diverged: MuJoCo reported huge accelerations. "
+                "Expected a finite motion. Try a gentler gait, a weaker effect or a smaller step."
             )
 
     def soften(self, creep: float) -> None:

@@ -270,8 +270,8 @@ def require_tame(rates: Array) -> None:
     """Raise NotConvergedError for huge rates."""
     if not np.abs(rates).max() < WILD:
         raise NotConvergedError(
-            "The laboratory's simulation broke down: the planar engine met huge speeds. Expected a "
-            "motion. Take a gentler gait, a weaker effect or a smaller step."
+            "The laboratory's simulation diverged: the planar engine reached huge speeds. Expected "
+            "a finite motion. Try a gentler gait, a weaker effect or a smaller step."
         )
 
 

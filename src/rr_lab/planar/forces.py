@@ -292,8 +292,8 @@ def _changed(
         case Rub():
             return viscous, dry + (law.torque * _first_fifth(moment.turns[0]) if n == 0 else 0.0)
     raise InputError(
-        f"The planar engine does not know {type(law).__name__}. Expected a law of the catalogue. "
-        "Take the engine mujoco."
+        f"The planar engine has no {type(law).__name__}. Expected a law of the catalogue. Use the "
+        "engine mujoco."
     )
 
 

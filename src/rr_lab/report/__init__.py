@@ -53,10 +53,11 @@ def _with_values(name: str, values: Mapping[str, float]) -> str:
 
 
 def size_text(case: Case) -> str:
-    """Their size: `12.3 σ, 0.8 σ re-fitted`; empty if nothing is hidden."""
+    """Their size: `12.3 σ, 0.8 σ after a re-fit`; empty if nothing is hidden."""
+    truth = case.truth
     return "; ".join(
-        f"{number(case.truth.size[name], 3)} σ, {number(case.truth.remains[name], 3)} σ re-fitted"
-        for name in case.truth.hidden
+        f"{number(truth.size[name], 3)} σ, {number(truth.remains[name], 3)} σ after a re-fit"
+        for name in truth.hidden
     )
 
 
@@ -103,8 +104,7 @@ class ProvedCase(Result):
     case: Case
     folder: Path
 
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """Both as plain data."""
+    def _record(self) -> dict[str, Any]:
         return case_record(self.case)
 
     def summary(self) -> str:
@@ -117,10 +117,10 @@ class ProvedCase(Result):
             ("disturbance", case.truth.disturbance),
             ("hidden", hidden_text(case)),
             ("size", size_text(case)),
-            ("said", said_text(case)),
+            ("diagnosis", said_text(case)),
             ("remainder", remainder_text(case)),
             ("outcome", case.outcome + ("" if case.scored else " (undetectable, not counted)")),
-            ("time", f"{case.wall:.0f} s, {case.cpu:.0f} s of CPU"),
+            ("time", f"{case.wall:.0f} s, {case.cpu:.0f} s CPU"),
             ("files", str(self.folder)),
         ]
         return "\n".join(columns([row for row in rows if row[1]])) + "\n"
@@ -134,65 +134,16 @@ def _records(rates: Mapping[str, Rate]) -> dict[str, Any]:
     return {name: rate.record for name, rate in rates.items()}
 
 
-def proof_record(opened: OpenedTrial) -> dict[str, Any]:
-    """The content of `proof.json`."""
-    cases, words = opened.cases, TEXTS["tables"]
-    counted = confusion(cases)
-    covered = _records(statistics.coverage(statistics.intervals(cases)))
-    return {
-        "status": "scored",
-        "seed": opened.seed,
-        "version": opened.version,
-        "code_sha256": opened.code,
-        "code_changed": opened.changed,
-        "cases": len(cases),
-        "measures": {
-            one.name: {"definition": one.definition, **one.rate(cases).record} for one in COUNTS
-        },
-        "engines": {engine: _records(rates) for engine, rates in by_engine(cases).items()},
-        "breakdown": {
-            "definition": words["breakdown"],
-            **{what: _records(rates) for what, rates in breakdown(cases).items()},
-        },
-        "confusion": {
-            "definition": words["confusion"],
-            "rows": list(counted.rows),
-            "columns": list(counted.columns),
-            "counts": [
-                [counted.counts.get((row, column), 0) for column in counted.columns]
-                for row in counted.rows
-            ],
-        },
-        "coverage": {
-            "definition": words["coverage"],
-            "all": covered.pop("all", Rate(0, 0).record),
-            "quantities": covered,
-        },
-        "held_out": {"definition": words["held_out"], "kinds": statistics.held_out(cases)},
-        "remainder": {"definition": words["remainder"], "kinds": statistics.remainders(cases)},
-        "time": {
-            "definition": words["time"],
-            **statistics.times(cases),
-            "making_cpu": statistics.quantiles(opened.made_seconds),
-        },
-        "p_values": {"definition": words["p_values"], "tests": statistics.uniformity(cases)},
-        "misses": [{**case_record(case), "page": page_of(case)} for case in opened.misses],
-        "not_made": dict(opened.failed),
-    }
-
-
-def cases_csv(opened: OpenedTrial) -> str:
-    """A row for each case; with two effects, sigma is that of the smaller one."""
-    head = (
-        "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",
-        "refitted_sigma", "counted", "said", "outcome", "missed", "groups", "heldout_before",
-        "heldout_refitted", "heldout_after", "wall_s", "cpu_s", "disturbance", "remainder",
-        "remainder_share",
-    )  # fmt: skip
-    return doc.csv_text(head, map(_row, opened.cases), digits=6)
+_COLUMNS = (
+    "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",
+    "refitted_sigma", "counted", "said", "outcome", "missed", "groups", "heldout_before",
+    "heldout_refitted", "heldout_after", "wall_s", "cpu_s", "disturbance", "remainder",
+    "remainder_share",
+)  # fmt: skip
 
 
 def _row(case: Case) -> tuple[Any, ...]:
+    """A row of cases.csv; with two effects, sigma is that of the smaller one."""
     truth, claim = case.truth, case.claim
     groups = ["|".join(sorted(group)) for group in claim.groups] if claim else []
     fit = (claim.before, claim.refitted, claim.after) if claim else (None,) * 3
@@ -224,18 +175,114 @@ class Proof(Result):
     opened: OpenedTrial
 
     def _record(self) -> dict[str, Any]:
-        return proof_record(self.opened)
+        opened, cases = self.opened, self.opened.cases
+        counted = confusion(cases)
+        covered = _records(statistics.coverage(statistics.intervals(cases)))
+        return {
+            "status": "scored",
+            "seed": opened.seed,
+            "version": opened.version,
+            "code_sha256": opened.code,
+            "code_changed": opened.changed,
+            "cases": len(cases),
+            "measures": {
+                one.name: {"definition": one.definition, **one.rate(cases).record} for one in COUNTS
+            },
+            "engines": {engine: _records(rates) for engine, rates in by_engine(cases).items()},
+            "breakdown": {
+                "definition": _SAYS["breakdown"],
+                **{what: _records(rates) for what, rates in breakdown(cases).items()},
+            },
+            "confusion": {
+                "definition": _SAYS["confusion"],
+                "rows": counted.rows,
+                "columns": counted.columns,
+                "counts": [
+                    [counted.counts.get((row, column), 0) for column in counted.columns]
+                    for row in counted.rows
+                ],
+            },
+            "coverage": {
+                "definition": _SAYS["coverage"],
+                "all": covered.pop("all", Rate(0, 0).record),
+                "quantities": covered,
+            },
+            "held_out": {"definition": _SAYS["held_out"], "kinds": statistics.held_out(cases)},
+            "remainder": {"definition": _SAYS["remainder"], "kinds": statistics.remainders(cases)},
+            "time": {
+                "definition": _SAYS["time"],
+                **statistics.times(cases),
+                "making_cpu": statistics.quantiles(opened.made_seconds),
+            },
+            "p_values": {"definition": _SAYS["p_values"], "tests": statistics.uniformity(cases)},
+            "misses": [{**case_record(case), "page": page_of(case)} for case in opened.misses],
+            "not_made": opened.failed,
+        }
 
     def _tables(self) -> dict[str, str]:
-        return {"cases.csv": cases_csv(self.opened)}
+        return {"cases.csv": doc.csv_text(_COLUMNS, map(_row, self.opened.cases), digits=6)}
 
-    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
-        """Counts, breakdowns and misses."""
-        return proof_document(self.opened, figures)
+    def document(self, figures: Sequence[doc.Figure] = (), *, linked: bool = False) -> doc.Document:
+        """Counts, breakdowns and misses; linked: with links to the reports of the misses, next to
+        the page."""
+        opened, cases = self.opened, self.opened.cases
+        rates = {one: rate for one in COUNTS if (rate := one.rate(cases)).total}
+        key = [doc.Fact(one.title, _of(rate)) for one, rate in rates.items() if one.name in _KEY]
+        counts = [(one.title, *_cells(rate), one.definition) for one, rate in rates.items()]
+        covered = statistics.coverage(statistics.intervals(cases))
+        sections = (
+            doc.Section("", (doc.Facts(tuple(key), key=True),)),
+            doc.Section("", (doc.Gallery(tuple(figures), wide=True),)),
+            doc.Section("Counts",
+                (doc.table(("what", "count", SHARE, "definition"), counts),), brief=False),
+            _by_engine(cases),
+            _section("By effect, realisation and disturbance", "breakdown",
+                ("by", "what", "right", SHARE),
+                [(what, name, *_cells(rate)) for what, by_name in breakdown(cases).items()
+                 for name, rate in by_name.items()]),
+            _section("Coverage of the 95 % intervals", "coverage", ("quantity", "count", SHARE),
+                [(name, *_cells(rate)) for name, rate in covered.items()]),
+            _section("Held-out error (medians)", "held_out",
+                ("kind", "cases", "nominal", "re-fitted", "corrected",
+                 "corrected, 90th percentile"),
+                [(kind, str(row["after"]["count"]),
+                  *_numbers([*(of["median"] for of in row.values()), row["after"]["quantile90"]]))
+                 for kind, row in statistics.held_out(cases).items()]),
+            _section("Remainder", "remainder", ("kind", *SIZES, "median share"),
+                [(kind, *(str(row[size]) for size in SIZES), *_numbers([row["share"]]))
+                 for kind, row in statistics.remainders(cases).items()]),
+            _section("p-values with nothing hidden", "p_values",
+                ("test", "nulls", "distance", "p-value", "below 0.05"),
+                [(test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
+                  str(one["below_005"])) for test, one in statistics.uniformity(cases).items()]),
+            _section("Time", "time", ("", "median", "90th percentile", "maximum"),
+                [(f"{name}, s", *_numbers(one[at] for at in ("median", "quantile90", "largest")))
+                 for name, one in statistics.times(cases).items()]),
+            doc.Section("Misses",
+                (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
+            doc.Section("Cases the laboratory could not make",
+                (doc.Facts(tuple(starmap(doc.Fact, opened.failed.items()))),)),
+        )  # fmt: skip
+        lead = f"{len(cases)} cases. {TEXTS['isolation']}"
+        lead += f" {TEXTS['changed']}" if opened.changed else ""
+        footer = (
+            f"rr-opt {opened.version}", f"seed `{opened.seed}`", f"code SHA-256 `{opened.code}`",
+        )  # fmt: skip
+        return doc.Document(
+            "", "blind trial of the diagnosis", self._headline, lead, sections, footer=footer
+        )
+
+    @property
+    def _headline(self) -> str:
+        """The two numbers that matter most."""
+        rates = {one.name: one.rate(self.opened.cases) for one in COUNTS}
+        words = {"single": "single effects named", "false_claims": "nulls with a false claim"}
+        parts = [f"{_of(rates[name])} {text}" for name, text in words.items() if rates[name].total]
+        return "Blind trial: " + (", ".join(parts) or f"{len(self.opened.misses)} misses")
 
     def _page(self, document: doc.Document) -> doc.Document:
         """Links to the reports of the misses are on the page only: these are not published."""
-        return proof_document(self.opened, document.figures, linked=True)
+        return self.document(document.figures, linked=True)
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
@@ -246,64 +293,17 @@ class Proof(Result):
         return written
 
 
-def headline(opened: OpenedTrial) -> str:
-    """The two numbers that matter most."""
-    rates = {one.name: one.rate(opened.cases) for one in COUNTS}
-    words = {"single": "single effects named", "false_claims": "nulls with a false claim"}
-    parts = [f"{_of(rates[name])} {text}" for name, text in words.items() if rates[name].total]
-    return "Blind trial: " + (", ".join(parts) or f"{len(opened.misses)} misses")
-
-
-def proof_document(
-    opened: OpenedTrial, figures: Sequence[doc.Figure] = (), *, linked: bool = False
-) -> doc.Document:
-    """The whole report; linked: with links to the reports of the misses, next to the page."""
-    cases = opened.cases
-    rates = {one: one.rate(cases) for one in COUNTS}
-    every = {one: rate for one, rate in rates.items() if rate.total}
-    key = tuple(doc.Fact(one.title, _of(rate)) for one, rate in every.items() if one.name in _KEY)
-    counts = [(one.title, *_cells(rate), one.definition) for one, rate in every.items()]
-    broken_down = [
-        (what, name, *_cells(rate))
-        for what, by_name in breakdown(cases).items()
-        for name, rate in by_name.items()
-    ]
-    covered = statistics.coverage(statistics.intervals(cases))
-    sections = (
-        doc.Section("", (doc.Facts(key, key=True),)),
-        doc.Section("", (doc.Gallery(tuple(figures), wide=True),)),
-        doc.Section("Counts",
-                    (doc.table(("what", "count", SHARE, "what is counted"), counts),), brief=False),
-        _section("By engine", TEXTS["engines"], _by_engine(cases)),
-        _section("By effect, realisation and disturbance", _SAYS["breakdown"],
-                 doc.table(("by", "what", "right", SHARE), broken_down)),
-        _section("Coverage of the 95 % intervals", _SAYS["coverage"],
-                 doc.table(("quantity", "count", SHARE),
-                       [(name, *_cells(rate)) for name, rate in covered.items()])),
-        _section("Held-out error, medians", _SAYS["held_out"], _held_out(cases)),
-        _section("Remainder", _SAYS["remainder"], _remainders(cases)),
-        _section("p-values where nothing is hidden", _SAYS["p_values"], _p_values(cases)),
-        _section("Time", _SAYS["time"], _times(cases)),
-        doc.Section("Misses",
-                    (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
-        doc.Section("Cases that the laboratory could not make",
-                    (doc.Facts(tuple(starmap(doc.Fact, opened.failed.items()))),)),
-    )  # fmt: skip
-    lead = f"{len(cases)} cases. {TEXTS['isolation']}"
-    lead += f" {TEXTS['changed']}" if opened.changed else ""
-    footer = (f"rr-opt {opened.version}", f"seed `{opened.seed}`", f"code SHA-256 `{opened.code}`")
-    return doc.Document("", "blind trial of the diagnosis", headline(opened), lead, sections,
-                    footer=footer)  # fmt: skip
-
-
-def _section(title: str, definition: str, numbers: doc.Table) -> doc.Section:
-    blocks: tuple[doc.Block, ...] = (definition, numbers) if numbers else ()
+def _section(
+    title: str, key: str, head: Sequence[str], rows: Sequence[Sequence[doc.Cell]]
+) -> doc.Section:
+    """A table below its definition; empty without rows."""
+    blocks: tuple[doc.Block, ...] = (_SAYS[key], doc.table(head, rows)) if rows else ()
     return doc.Section(title, blocks, brief=False)
 
 
 def _of(one: Rate) -> str:
     """`17 of 20`."""
-    return f"{one.count} of {one.total}" if one.total else "no case"
+    return f"{one.count} of {one.total}" if one.total else "no cases"
 
 
 def _cells(one: Rate) -> tuple[str, str]:
@@ -318,58 +318,21 @@ def _numbers(values: Iterable[float | None]) -> list[str]:
     return ["–" if value is None else number(value, 3) for value in values]
 
 
-def _by_engine(cases: Sequence[Case]) -> doc.Table:
+def _by_engine(cases: Sequence[Case]) -> doc.Section:
     """A row for each count with a column for each engine; counts without cases are omitted."""
     engines = by_engine(cases)
-    return doc.table(
-        ("what", *(word for name in engines for word in (name, "share"))),
-        [
-            (title, *(cell for rates in engines.values() for cell in _cells(rates[name])))
-            for name, title in TITLES.items()
-            if any(rates[name].total for rates in engines.values())
-        ],
-    )
-
-
-def _held_out(cases: Sequence[Case]) -> doc.Table:
     rows = [
-        (kind, str(row["after"]["count"]),
-         *_numbers([*(row[when]["median"] for when in row), row["after"]["quantile90"]]))
-        for kind, row in statistics.held_out(cases).items()
-    ]  # fmt: skip
-    head = ("kind", "cases", "nominal", "re-fitted", "corrected", "corrected, 90 % below")
-    return doc.table(head, rows)
-
-
-def _remainders(cases: Sequence[Case]) -> doc.Table:
-    rows = [
-        (kind, *(str(row[size]) for size in SIZES), *_numbers([row["share"]]))
-        for kind, row in statistics.remainders(cases).items()
+        (title, *(cell for rates in engines.values() for cell in _cells(rates[name])))
+        for name, title in TITLES.items()
+        if any(rates[name].total for rates in engines.values())
     ]
-    return doc.table(("kind", *SIZES, "median share"), rows)
-
-
-def _p_values(cases: Sequence[Case]) -> doc.Table:
-    rows = [
-        (test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
-         str(one["below_005"]))
-        for test, one in statistics.uniformity(cases).items()
-    ]  # fmt: skip
-    return doc.table(("test", "nulls", "distance", "p-value", "below 0.05"), rows)
-
-
-def _times(cases: Sequence[Case]) -> doc.Table:
-    rows = [
-        (f"{name}, s", *_numbers(one[at] for at in ("median", "quantile90", "largest")))
-        for name, one in statistics.times(cases).items()
-    ]
-    return doc.table(("", "median", "90 % below", "most"), rows)
+    head = ("what", *(word for name in engines for word in (name, "share")))
+    return _section("By engine", "engines", head, rows)
 
 
 def _misses(opened: OpenedTrial, linked: bool) -> doc.Table:
-    head = ("case", "outcome", "engine", "hidden", "size", "said")
     return doc.table(
-        head,
+        ("case", "outcome", "engine", "hidden", "size", "diagnosis"),
         [
             (doc.Link(case.id, page_of(case)) if linked else case.id, case.outcome,
              case.truth.engine, hidden_text(case), size_text(case), said_text(case))

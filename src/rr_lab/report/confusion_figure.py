@@ -17,10 +17,9 @@ _CELL = 0.42
 def draw(proof: Proof) -> dict[str, str]:
     """The figure as SVG text by its name."""
     counted = confusion(proof.opened.cases)
-    with style.styled():
-        drawn = style.figure(3.2 + _CELL * len(counted.columns), 2.6 + _CELL * len(counted.rows))
-        matrix(drawn.subplots(), counted)
-        return {"confusion": style.svg(drawn)}
+    drawn = style.figure(3.2 + _CELL * len(counted.columns), 2.6 + _CELL * len(counted.rows))
+    matrix(drawn.subplots(), counted)
+    return {"confusion": style.svg(drawn)}
 
 
 def matrix(ax: Axes, counted: Confusion) -> None:

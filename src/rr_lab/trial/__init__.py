@@ -156,8 +156,8 @@ class Trial:
         text = path.read_text(encoding="utf-8") if path.is_file() else ""
         if seal_of(text) != seal:
             raise InputError(
-                f"The answer {path} has the SHA-256 {seal_of(text)}. Expected that of its seal, "
-                f"{seal}: it was changed after it was sealed. Begin anew with --restart."
+                f"The answer {path} has the SHA-256 {seal_of(text)}. Expected the one it was "
+                f"sealed with, {seal}: it has been changed since. Start over with --restart."
             )
         return json.loads(text)
 
@@ -188,8 +188,8 @@ def basis_of(folder: Path) -> Basis | None:
         return Basis(head["seed"], tuple(head["kinds"]), tuple(head["engines"]))
     except (ValueError, KeyError, TypeError, RecursionError):
         raise InputError(
-            f"The journal {journal} is damaged in line 1. Expected the seed, the kinds and the "
-            "engines of a trial. Begin anew with --restart."
+            f"The journal {journal} is damaged in line 1. Expected the seed, kinds and engines "
+            "of a trial. Start over with --restart."
         ) from None
 
 

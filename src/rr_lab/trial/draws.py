@@ -139,8 +139,8 @@ def read_kinds(text: str) -> tuple[str, ...]:
     kinds = tuple(part.strip() for part in text.split(",") if part.strip())
     if not kinds or any(_head(kind) not in BLOCK for kind in kinds):
         raise InputError(
-            f"--kinds: Read {text!r}. Expected some of {', '.join(BLOCK)}, separated by commas. "
-            "Correct it, or leave --kinds out for all."
+            f"--kinds: Read {text!r}. Expected one or more of {', '.join(BLOCK)}, separated by "
+            "commas. Correct it, or leave out --kinds for all of them."
         )
     for kind in kinds:
         head, _, name = kind.partition(":")
@@ -157,7 +157,7 @@ def read_seed(text: str) -> str:
     if not word or set(word) - set("0123456789abcdef"):
         raise InputError(
             f"--seed: Read {text!r}. Expected hexadecimal digits such as 1f3a, or `commit` for the "
-            "hash of the commit. Correct it."
+            "commit's hash. Correct it."
         )
     return word
 
@@ -177,15 +177,14 @@ def seed_of_commit(source: Path, results: Path) -> str:
         changed = _git(top, "status", "--porcelain", "--", ".", *own).splitlines()
     except (OSError, subprocess.CalledProcessError):
         raise InputError(
-            f"The code in {source} is in no git repository. Expected a commit, whose hash is the "
-            "seed. Give a seed of your own with --seed."
+            f"The code in {source} is not in a git repository. Expected a commit, whose hash is "
+            "the seed. Give your own seed with --seed."
         ) from None
     if changed:
         more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
         raise InputError(
-            f"Read changes that are in no commit: {changed[0].strip()}{more}. Expected the code as "
-            "it was committed, since the commit's hash is the seed. Commit the changes, or give a "
-            "seed of your own with --seed."
+            f"Read uncommitted changes: {changed[0].strip()}{more}. Expected none, since the "
+            "commit's hash is the seed. Commit the changes, or give your own seed with --seed."
         )
     return commit
 

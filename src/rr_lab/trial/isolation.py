@@ -96,7 +96,7 @@ def opened_case(id: str, answer: Mapping[str, Any], row: Mapping[str, Any]) -> C
     elif row["exit_code"]:
         why = f"ended with exit code {row['exit_code']}"
     else:
-        why = "diagnosis.json is missing or cannot be read"
+        why = "diagnosis.json is missing or unreadable"
     return Case(id, Truth.of(answer), claim, row["wall"], row["cpu"], why)
 
 

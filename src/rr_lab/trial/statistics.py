@@ -204,68 +204,53 @@ class Count:
         return Rate.of(self.counted(case) for case in cases if self.among(case))
 
 
-def _kind(kind: str, *, detectable: bool | None = None) -> Predicate:
-    """Cases of a kind; detectable: only those with detectable effects, or without."""
-    return lambda case: case.truth.kind == kind and detectable in (None, case.scored)
+def _kind(kind: str) -> Predicate:
+    """Cases of a kind, with everything that is hidden detectable."""
+    return lambda case: case.truth.kind == kind and case.scored
 
 
-def _null(kind: str) -> Predicate:
-    return lambda case: case.truth.kind == kind and case.truth.nothing
+def _strength(name: str) -> Predicate:
+    return lambda case: case.scored and case.truth.strength == name
 
 
-def _right(case: Case) -> bool:
-    return case.outcome == "right"
-
-
-def _came_out(outcome: str) -> Predicate:
+def _outcome(outcome: str) -> Predicate:
     return lambda case: case.outcome == outcome
 
 
 def _all_named(case: Case) -> bool:
-    return _right(case) and len(case.found) == len(case.truth.names) and not case.extra
+    return _RIGHT(case) and len(case.found) == len(case.truth.names) and not case.extra
 
 
 def _by_its_name(case: Case) -> bool:
-    return _right(case) and case.claim is not None and case.claim.names == case.truth.names
+    return _RIGHT(case) and case.claim is not None and case.claim.names == case.truth.names
 
 
-def _and(*conditions: Predicate) -> Predicate:
-    return lambda case: all(condition(case) for condition in conditions)
-
-
-def _spread(size: float) -> Predicate:
-    return lambda case: case.truth.spread == size
-
-
-def _strength(name: str) -> Predicate:
-    return lambda case: case.truth.strength == name
-
-
-_SINGLE, _PAIR = _kind("single", detectable=True), _kind("pair", detectable=True)
-_OUTSIDE, _NULL = _kind("outside", detectable=True), _null("null")
-_FALSE = _came_out("false claim")
+_RIGHT, _FALSE = _outcome("right"), _outcome("false claim")
+_NULL, _SINGLE, _PAIR, _OUTSIDE = map(_kind, ("null", "single", "pair", "outside"))
+_PARAMETERS, _DISTURBED = map(_kind, ("parameters", "disturbed"))
 
 _PREDICATES: dict[str, tuple[Predicate, Predicate]] = {
     "false_claims": (_NULL, _FALSE),
-    "false_claims_exact": (_and(_NULL, _spread(0.0)), _FALSE),
-    "false_claims_off": (_and(_NULL, _spread(1.0)), _FALSE),
-    "single": (_SINGLE, _right),
-    **{f"single_{name}": (_and(_SINGLE, _strength(name)), _right) for name in STRENGTHS},
+    "false_claims_exact": (lambda case: _NULL(case) and case.truth.spread == 0.0, _FALSE),
+    "false_claims_off": (lambda case: _NULL(case) and case.truth.spread == 1.0, _FALSE),
+    "single": (_SINGLE, _RIGHT),
+    **{f"single_{name}": (_strength(name), _RIGHT) for name in STRENGTHS},
     "single_exact": (_SINGLE, _by_its_name),
-    "single_invisible": (_kind("single", detectable=False), lambda case: not case.missed),
-    "pair_both": (_PAIR, _right),
+    "single_invisible": (
+        lambda case: case.truth.kind == "single" and not case.scored,
+        lambda case: not case.missed,
+    ),
+    "pair_both": (_PAIR, _RIGHT),
     "pair_one": (_PAIR, lambda case: bool(case.found)),
     "pair_wrong": (_PAIR, lambda case: bool(case.extra)),
-    "parameters": (_kind("parameters"), _right),
-    "parameters_named": (_kind("parameters"), _all_named),
-    "outside": (_OUTSIDE, _right),
-    "outside_named": (_OUTSIDE, _came_out("named with confidence")),
-    "disturbed_false_claims": (_null("disturbed"), _FALSE),
-    "disturbed_single": (
-        _and(_kind("disturbed", detectable=True), lambda case: not case.truth.nothing), _right,
-    ),
+    "parameters": (_PARAMETERS, _RIGHT),
+    "parameters_named": (_PARAMETERS, _all_named),
+    "outside": (_OUTSIDE, _RIGHT),
+    "outside_named": (_OUTSIDE, _outcome("named with confidence")),
+    "disturbed_false_claims": (lambda case: _DISTURBED(case) and case.truth.nothing, _FALSE),
+    "disturbed_single": (lambda case: _DISTURBED(case) and not case.truth.nothing, _RIGHT),
     "no_answer": (lambda _: True, lambda case: case.claim is None),
-}  # fmt: skip
+}
 """By name: the cases considered, and those counted."""
 
 TEXTS = tomllib.loads(Path(__file__).with_name("texts.toml").read_text(encoding="utf-8"))
@@ -285,7 +270,7 @@ def breakdown(cases: Sequence[Case]) -> dict[str, dict[str, Rate]]:
     right: dict[str, dict[str, list[bool]]] = {"effect": {}, "realisation": {}, "disturbance": {}}
     for case in cases:
         for what, key in _rows(case).items():
-            right[what].setdefault(key, []).append(_right(case))
+            right[what].setdefault(key, []).append(_RIGHT(case))
     return {
         what: {key: Rate.of(flags) for key, flags in sorted(by_key.items())}
         for what, by_key in right.items()

@@ -1,10 +1,11 @@
 """The calibration: what the nine averages imply about the paper's robot, and about the models."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rr_opt.array import Array
 from rr_paper.calibration.comparison import Assessment, assess, coverage
 from rr_paper.calibration.fit import Data, Effort, Estimator, estimator, measured
 from rr_paper.calibration.intervals import Posterior, Profile, profiles, sample
@@ -18,8 +19,7 @@ from rr_paper.calibration.models import (
     Reading,
     shares,
 )
-from rr_paper.calibration.report import Calibration
-from rr_paper.calibration.result import ASSUMED, Alternative, Shipped, shipped_values
+from rr_paper.calibration.report import ASSUMED, Alternative, Calibration, Shipped, shipped_values
 from rr_paper.publication import COLUMNS, Column
 
 _CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)
@@ -47,57 +47,63 @@ def calibrate(progress: Callable[[str], None]) -> Calibration:
 
     progress(`WHAT 3 of 8`) is called often; an exception that it raises ends the work.
     """
-    count = _Count(progress, len(MODELS) * len(COLUMNS) + len(COLUMNS) + 2)
-    viscous, assessments = _assess_all(count)
+    work = _Work(progress, len(MODELS) * len(COLUMNS) + len(COLUMNS) + 2)
+    viscous, assessments = _assess_all(work)
     posterior: dict[Column, Posterior] = {}
     for column in COLUMNS:
-        count.next(f"posterior, {column} column")
-        posterior[column] = sample(
-            viscous, measured(column), chains=CHAINS, sweeps=SWEEPS, tick=count.tick
-        )
-    count.next("coverage")
-    covered = coverage(
-        viscous, posterior["mean"], measured("mean"), sets=COVERAGE_SETS, tick=count.tick
-    )
-    count.next("other readings of J20/J10")
-    normal: dict[Column, tuple[Profile, ...]] = {}
-    shipped: dict[Column, Shipped] = {}
-    for column in COLUMNS:
-        data, least = measured(column), assessments[VISCOUS, column].student.deviance
-        normal[column] = profiles(viscous, data, range(viscous.points.shape[1]), "normal")
-        shipped[column] = _shipped(viscous, data, least)
-    return Calibration(assessments, posterior, normal, shipped, covered, _alternatives(count.tick))
+        work.begin(f"posterior, {column} column")
+        posterior[column] = sample(viscous, measured(column), chains=CHAINS, sweeps=SWEEPS)
+    work.begin("coverage")
+    covered = coverage(viscous, posterior["mean"], measured("mean"), COVERAGE_SETS)
+    work.begin("other readings of J20/J10")
+    normal: dict[Column, tuple[Profile, ...]] = {
+        column: profiles(viscous, measured(column), range(viscous.points.shape[1]), "normal")
+        for column in COLUMNS
+    }
+    shipped: dict[Column, Shipped] = {
+        column: _shipped(viscous, measured(column), assessments[VISCOUS, column].student.deviance)
+        for column in COLUMNS
+    }
+    return Calibration(assessments, posterior, normal, shipped, covered, _alternatives(work))
 
 
-class _Count:
-    """Progress of work in a known number of parts."""
+@dataclass
+class _Work:
+    """A known number of parts, whose progress is reported whenever a model is evaluated."""
 
-    def __init__(self, progress: Callable[[str], None], total: int):
-        self._progress, self._total, self._done, self._words = progress, total, 0, ""
+    progress: Callable[[str], None]
+    total: int
+    done: int = 0
+    words: str = ""
 
-    def next(self, words: str) -> None:
+    def begin(self, words: str) -> None:
         """Start the next part."""
-        self._done, self._words = self._done + 1, words
-        self.tick()
+        self.done, self.words = self.done + 1, words
+        self.report()
 
-    def tick(self) -> None:
-        """Report progress within a part."""
-        self._progress(f"{self._words} {self._done} of {self._total}")
+    def report(self) -> None:
+        """Report the part."""
+        self.progress(f"{self.words} {self.done} of {self.total}")
+
+    def estimator(self, model: Model, reading: Reading, effort: Effort) -> Estimator:
+        """The estimator of a model."""
+
+        def signed(points: Array) -> Array:
+            self.report()
+            return model(points, reading)
+
+        return estimator(signed, len(model.unknowns), effort)
 
 
-def _estimator(model: Model, reading: Reading, work: Effort, tick: Callable[[], None]) -> Estimator:
-    return estimator(lambda points: model(points, reading), len(model.unknowns), work, tick)
-
-
-def _assess_all(count: _Count) -> tuple[Estimator, dict[tuple[str, Column], Assessment]]:
+def _assess_all(work: _Work) -> tuple[Estimator, dict[tuple[str, Column], Assessment]]:
     """The viscous model's estimator, and every model's assessments."""
     estimators: dict[str, Estimator] = {}
     assessments: dict[tuple[str, Column], Assessment] = {}
     for name, model in MODELS.items():
         for column in COLUMNS:
-            count.next(f"{name}, {column} column")
+            work.begin(f"{name}, {column} column")
             if name not in estimators:
-                estimators[name] = _estimator(model, READINGS[0], effort(model), count.tick)
+                estimators[name] = work.estimator(model, READINGS[0], effort(model))
             inner = None
             if name != VISCOUS:
                 inner = estimators[VISCOUS], assessments[VISCOUS, column]
@@ -105,13 +111,13 @@ def _assess_all(count: _Count) -> tuple[Estimator, dict[tuple[str, Column], Asse
     return estimators[VISCOUS], assessments
 
 
-def _alternatives(tick: Callable[[], None]) -> tuple[Alternative, ...]:
+def _alternatives(work: _Work) -> tuple[Alternative, ...]:
     """The viscous model, and that with dry friction, for every other reading of J20/J10."""
     found = []
     for reading in READINGS[1:]:
         for name, reduced in REDUCED.items():
             model = MODELS[name]
-            here = _estimator(model, reading, replace(effort(model), **reduced), tick)
+            here = work.estimator(model, reading, replace(effort(model), **reduced))
             for column in COLUMNS:
                 data = measured(column)
                 best = here.fit(data)

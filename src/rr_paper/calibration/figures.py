@@ -11,7 +11,7 @@ from rr_paper.calibration.comparison import Coverage
 from rr_paper.calibration.fit import measured
 from rr_paper.calibration.intervals import LEVEL
 from rr_paper.calibration.models import MODELS, UNKNOWNS, VISCOUS
-from rr_paper.calibration.result import Findings, Interval, shipped_values
+from rr_paper.calibration.report import Calibration, Interval, shipped_values
 from rr_paper.publication import COLUMNS, ROWS, T_POINT, Column
 
 _MARKS = {
@@ -35,18 +35,17 @@ _TOP = 12.0
 """Deviance up to which a profile is drawn."""
 
 
-def draw(found: Findings) -> dict[str, str]:
+def draw(found: Calibration) -> dict[str, str]:
     """All figures as SVG texts by name."""
-    with style.styled():
-        drawn = {
-            "unknowns": unknowns_figure(found),
-            "predictions": predictions_figure(found),
-            "coverage": coverage_figure(found.coverage),
-        }
-        return {name: style.svg(one) for name, one in drawn.items()}
+    drawn = {
+        "unknowns": unknowns_figure(found),
+        "predictions": predictions_figure(found),
+        "coverage": coverage_figure(found.coverage),
+    }
+    return {name: style.svg(one) for name, one in drawn.items()}
 
 
-def unknowns_figure(found: Findings) -> Figure:
+def unknowns_figure(found: Calibration) -> Figure:
     """A column of panels for each unknown: above, the rest of the box; below, the profiles."""
     intervals = found.intervals()
     names = MODELS[VISCOUS].unknowns
@@ -61,13 +60,13 @@ def unknowns_figure(found: Findings) -> Figure:
     for ax in axes[1, 1:]:
         ax.set_yticklabels([])
     axes[0, 0].set_ylabel("posterior, box = 1")
-    axes[1, 0].set_ylabel("rise of the deviance")
+    axes[1, 0].set_ylabel("rise in deviance")
     handles, labels = axes[1, 0].get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4)
     return drawn
 
 
-def _posterior_panel(ax: Axes, found: Findings, here: Sequence[Interval]) -> None:
+def _posterior_panel(ax: Axes, found: Calibration, here: Sequence[Interval]) -> None:
     """Histograms over the box; the box itself is uniform grey at 1."""
     unknown = here[0].unknown
     edges, top = np.linspace(0, 1, _BINS + 1), 1.4
@@ -102,7 +101,7 @@ def _profile_panel(ax: Axes, here: Sequence[Interval]) -> None:
     ax.set_ylim(0, _TOP)
 
 
-def predictions_figure(found: Findings) -> Figure:
+def predictions_figure(found: Calibration) -> Figure:
     """A panel for each column; a mark for each model and row, in half widths of the interval."""
     drawn = style.figure(10.2, 6.4)
     axes = drawn.subplots(2, 1, sharex=True)
@@ -120,7 +119,7 @@ def predictions_figure(found: Findings) -> Figure:
     return drawn
 
 
-def _prediction_panel(ax: Axes, found: Findings, column: Column) -> None:
+def _prediction_panel(ax: Axes, found: Calibration, column: Column) -> None:
     data = measured(column)
     ax.axhspan(-1, 1, color=style.FAINT, lw=0)
     ax.axhline(0, color=style.GREY, lw=0.8)
@@ -137,7 +136,7 @@ def _prediction_panel(ax: Axes, found: Findings, column: Column) -> None:
                         xytext=(0, 4 if y > 0 else -4), textcoords="offset points")  # fmt: skip
     ax.set_ylim(-1.2 * _EDGE, 1.2 * _EDGE)
     ax.grid(axis="x", visible=False)
-    ax.set_title(f"{_TITLES[column]}: inside the grey band is inside the 95 % interval")
+    ax.set_title(f"{_TITLES[column]} (grey band: the 95 % interval)")
 
 
 def coverage_figure(covered: Coverage) -> Figure:
@@ -147,8 +146,8 @@ def coverage_figure(covered: Coverage) -> Figure:
     names = MODELS[VISCOUS].unknowns
     kinds = (
         ("posterior, Student", covered.posterior, "o", style.FORWARD),
-        ("profile, Student", covered.profile["student"], "s", style.LIMIT),
-        ("profile, normal", covered.profile["normal"], "D", style.BACKWARD),
+        ("profile, Student", covered.profile_student, "s", style.LIMIT),
+        ("profile, normal", covered.profile_normal, "D", style.BACKWARD),
     )
     spread = 196 * np.sqrt(0.95 * 0.05 / covered.sets)
     ax.axhspan(95 - spread, min(95 + spread, 100), color=style.FAINT, lw=0)

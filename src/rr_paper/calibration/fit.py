@@ -88,10 +88,6 @@ def one_way(speeds: Array) -> Array:
     return speeds * np.sign(speeds.sum(axis=-1, keepdims=True))
 
 
-_BLOCK = 4096
-"""Points between two calls of `tick`, which may raise an interrupt."""
-
-
 @dataclass(frozen=True)
 class Effort:
     """The computational effort.
@@ -227,16 +223,11 @@ class Estimator:
         return self.points[best]
 
 
-def estimator(
-    signed: Callable[[Array], Array], unknowns: int, effort: Effort, tick: Callable[[], None]
-) -> Estimator:
-    """With 2^log2_size points of Sobol's sequence. tick: called often."""
+def estimator(signed: Callable[[Array], Array], unknowns: int, effort: Effort) -> Estimator:
+    """With 2^log2_size points of Sobol's sequence."""
     sobol = qmc.Sobol(unknowns, rng=np.random.default_rng(0))
-    points, speeds = sobol.random_base2(effort.log2_size), []
-    for first in range(0, len(points), _BLOCK):
-        tick()
-        speeds.append(one_way(signed(points[first : first + _BLOCK])))
-    return Estimator(signed, effort, points, np.concatenate(speeds))
+    points = sobol.random_base2(effort.log2_size)
+    return Estimator(signed, effort, points, one_way(signed(points)))
 
 
 _DIFFERENCE = 5e-3

@@ -5,7 +5,7 @@ within 3.84 of the least. This holds asymptotically.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -156,30 +156,22 @@ def library_draws(
     return estimator.points[chosen], float(1 / (likelihood**2).sum())
 
 
-def sample(
-    estimator: Estimator, data: Data, *, chains: int, sweeps: int, tick: Callable[[], None]
-) -> Posterior:
+def sample(estimator: Estimator, data: Data, *, chains: int, sweeps: int) -> Posterior:
     """Draws from the posterior by Student's t, of the second half of the sweeps."""
     draw = np.random.default_rng(1)
     x, weight = library_draws(estimator, data, chains, draw)
-    kept = evolve(estimator, x[None], data, sweeps, draw, tick)[:, 0]
+    kept = evolve(estimator, x[None], data, sweeps, draw)[:, 0]
     points = kept.reshape(-1, x.shape[1])
     deviance = data.deviance(estimator.predict(points))
     return Posterior(points, deviance, _split_rhat(kept), weight)
 
 
 def evolve(
-    estimator: Estimator,
-    x: Array,
-    data: Data,
-    sweeps: int,
-    draw: np.random.Generator,
-    tick: Callable[[], None],
+    estimator: Estimator, x: Array, data: Data, sweeps: int, draw: np.random.Generator
 ) -> Array:
     """Sweeps of S data sets side by side, from chains x (S, C, unknowns).
 
     Returns the chains at every fifth sweep of the second half, (kept, S, C, unknowns).
-    tick: called before each sweep.
     """
     x, (sets, chains, size) = x.copy(), x.shape
     rows = (sets, data.speed.shape[-1])
@@ -192,7 +184,6 @@ def evolve(
     D, kept = deviance(x), []
     halves = slice(0, chains // 2), slice(chains // 2, chains)
     for sweep in range(sweeps):
-        tick()
         for moving, lending in (halves, halves[::-1]):
             proposed = _proposals(x[:, moving], x[:, lending], sweep, draw)
             there = deviance(proposed)

@@ -101,7 +101,7 @@ class Reading:
         """In words."""
         point = "the joint P" if self.about == "joint" else "each centre of mass"
         if self.by == "inertia":
-            return f"about {point}, I20 alone changed"
+            return f"about {point}, changing I20 only"
         return f"about {point}, by loads {1e3 * self.spread:.0f} mm off the axis"
 
 
@@ -223,9 +223,9 @@ _ALL = (
           _viscous(lambda alpha, T, _: sine(alpha, T, _SMOOTH)), profiled=_BASIC),
     Model("viscous+dry", "viscous and dry friction", (*_BASIC, "force"), _with_dry,
           cost=30, block=512, nested=True, profiled=("k", "force")),
-    Model("rate limit", "viscous, the servo limited to 30 rpm", _BASIC,
+    Model("rate limit", "viscous, servo limited to 30 rpm", _BASIC,
           _viscous(lambda alpha, T, _: limited(alpha, T, _CORNERS)), cost=5, block=16),
-    Model("lag", "viscous, the servo with a lag", (*_BASIC, "lag"),
+    Model("lag", "viscous, servo with a lag", (*_BASIC, "lag"),
           _viscous(lambda alpha, T, x: lagging(alpha, T, np.repeat(x["lag"], len(ROWS)), _SMOOTH)),
           nested=True, profiled=("lag",)),
     Model("printed", "viscous, equation (3) as printed", _BASIC, _printed),

@@ -63,7 +63,7 @@ def known():
     """Rows of a known robot without scatter, and an estimator."""
     work = Effort(log2_size=11, slices=6, values=0, starts=0, steps=20, sets=0)
     data = Data(predict(TRUTH)[0], 0.1 * DATA.error)
-    return data, estimator(signed, 5, work, lambda: None)
+    return data, estimator(signed, 5, work)
 
 
 def test_a_known_robot_is_recovered(known):

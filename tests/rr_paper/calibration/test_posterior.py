@@ -27,12 +27,12 @@ def on_a_grid() -> tuple[np.ndarray, np.ndarray]:
 
 def fitter() -> Estimator:
     work = Effort(log2_size=10, slices=0, values=41, starts=1, steps=20, sets=0)
-    return estimator(predict, 2, work, lambda: None)
+    return estimator(predict, 2, work)
 
 
 def test_quantiles():
     at, deviance = on_a_grid()
-    drawn = sample(fitter(), DATA, chains=60, sweeps=600, tick=lambda: None)
+    drawn = sample(fitter(), DATA, chains=60, sweeps=600)
     for unknown, along in enumerate((1, 0)):
         mass = np.exp(-deviance / 2).sum(axis=along)
         below = np.cumsum(mass) / mass.sum()
