@@ -33,7 +33,7 @@ ten seconds instead of one, for code that is less than twice as fast.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import casadi as ca
@@ -275,20 +275,16 @@ class Shooting:
     layout: ProgramLayout
     terms: IntervalTerms
 
-    @cached_property
-    def solver(self) -> ca.Function:
-        """The solver on CasADi's virtual machine."""
-        return _Program(self.layout, self.terms, self.terms.functions).solver()
-
     @property
-    def fastest(self) -> ca.Function:
-        """The solver as machine code, where available."""
-        return self.solver if self.terms.compiled.code(0) is None else self._compiled
+    def solver(self) -> ca.Function:
+        """The solver as machine code, where available; else on CasADi's virtual machine."""
+        functions = self.terms.compiled.code(0) or self.terms.functions
+        return _solver(self.layout, self.terms, functions)
 
-    @cached_property
-    def _compiled(self) -> ca.Function:
-        compiled = self.terms.compiled.code(0) or self.terms.functions
-        return _Program(self.layout, self.terms, compiled).solver()
+
+@lru_cache
+def _solver(layout: ProgramLayout, terms: IntervalTerms, functions: Functions) -> ca.Function:
+    return _Program(layout, terms, functions).solver()
 
 
 @lru_cache
@@ -373,20 +369,13 @@ class _Program:
         nl, outputs = len(self.layout.local), self.terms.slopes.size1()
         slopes = self.functions.jacobian.map(n)(*self.per_node, self.z, self.fixed)
 
-        def node_by_node(row: int) -> list[ca.MX]:
-            known = self.terms.slopes
-            return [
-                ca.diag(slopes[row, j::wrt]) if known.has_nz(row, j) else ca.MX(n, n)
-                for j in range(nl)
-            ]
-
         def along(row: int, blocks: list[ca.MX]) -> ca.MX:
             to_z = ca.horzcat(*(slopes[row, j::wrt].T for j in range(nl, wrt)))
             return ca.horzcat(to_z, ca.MX(n, nm), *blocks)
 
         rows = []
         for i in range(self.states):
-            blocks = node_by_node(i)
+            blocks = self._diagonal(slopes, self.terms.slopes, i)
             blocks[i] -= self.shift
             rows.append(along(i, blocks))
         sums = slice(self.states, self.states + nm)
@@ -399,7 +388,10 @@ class _Program:
         )
         to_z, to_mean = self.terms.period.slopes(*self.per_period)
         rows.append(ca.horzcat(to_z, to_mean, ca.MX(to_z.size1(), nl * n)))
-        rows += [along(row, node_by_node(row)) for row in range(sums.stop, outputs)]
+        rows += [
+            along(row, self._diagonal(slopes, self.terms.slopes, row))
+            for row in range(sums.stop, outputs)
+        ]
         return ca.vertcat(*rows)
 
     def _hessian(self, lam_f: ca.MX, lam_g: ca.MX) -> ca.MX:
@@ -423,11 +415,14 @@ class _Program:
             ca.horzcat(ca.MX(nm, nz), limit_mean + lam_f * of_mean, ca.MX(nm, nl * n)),
         ]
         for i in range(nl):
-            blocks = [
-                ca.diag(curves[i, j::wrt])
-                if j >= i and self.terms.curves.has_nz(i, j)
-                else ca.MX(n, n)
-                for j in range(nl)
-            ]
+            blocks = self._diagonal(curves, self.terms.curves, i, first=i)
             rows.append(ca.horzcat(ca.MX(n, nz + nm), *blocks))
         return ca.vertcat(*rows)
+
+    def _diagonal(self, values: ca.MX, known: ca.Sparsity, row: int, first: int = 0) -> list[ca.MX]:
+        """Blocks of a row by local unknowns, from the first of them on: each node's by its own."""
+        n, wrt = self.layout.intervals, self.wrt
+        return [
+            ca.diag(values[row, j::wrt]) if j >= first and known.has_nz(row, j) else ca.MX(n, n)
+            for j in range(len(self.layout.local))
+        ]
