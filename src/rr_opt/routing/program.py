@@ -109,11 +109,6 @@ class DriveStage:
     fewest: float = 0.05
     straight: bool = False
 
-    @property
-    def coasts(self) -> bool:
-        """Whether the joint is held still."""
-        return self.fixed and self.amplitude == 0
-
 
 @dataclass(frozen=True)
 class SolvedDrive:
