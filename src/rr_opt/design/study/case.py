@@ -184,10 +184,10 @@ def solve_study(
     left = {case: donors for case, donors in planned.donors.items() if case not in rows}
     yield from found(
         {
-            case: replace(
-                Task(portable(problems[case])),
-                footholds=tuple(footholds(donors, rows)),
-                expected=expected_speed(problems[case], donors, rows, problems),
+            case: Task(
+                portable(problems[case]),
+                tuple(footholds(donors, rows)),
+                expected_speed(problems[case], donors, rows, problems),
             )
             for case, donors in left.items()
         }
