@@ -38,11 +38,12 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 
+from rr_opt.design.landscape import ballasted
 from rr_opt.design.shapes import Shape
 from rr_opt.design.transcription import COMMON, DYNAMIC, GRIPS, MEANS, ROWS, ProgramLayout
 from rr_opt.mechanics.compile_cache import WhenItPays, externals
 from rr_opt.mechanics.runge_kutta import BUTCHER6
-from rr_opt.model.ballast import By, hang
+from rr_opt.model.ballast import By
 from rr_opt.motion.dynamics import Dynamics, derive
 
 _IPOPT = {
@@ -108,10 +109,11 @@ class IntervalTerms:
         fixed = ca.SX.sym("fixed", len(parameters) + 5)
         theta, width = ca.SX.sym("theta"), ca.SX.sym("width")
         decided = _named(COMMON + shape.decisions, z)
-        values = _with_ballast(fixed, parameters, decided["ballast"], by)
-        interval = _Interval(
-            derive(effects), shape, values, decided, _named(local_names, local), theta, width
-        )
+        *robot, mass, distance, spread, low, high = ca.vertsplit(fixed)
+        amount, each = low + decided["ballast"] * (high - low), (mass, distance, spread)
+        values = ballasted(dict(zip(parameters, robot, strict=True)), by, each, amount)
+        own, p = _named(local_names, local), ca.vertcat(*values.values())
+        interval = _Interval(derive(effects), shape, p, decided, own, theta, width)
         end = interval.end(substeps)
         out = ca.cse(
             ca.vertcat(
@@ -208,20 +210,6 @@ def _cubic(at: ca.SX, v0: ca.SX, v1: ca.SX, d0: ca.SX, d1: ca.SX) -> ca.SX:
     """The cubic through v0 at 0 and v1 at 1 with slopes d0 and d1 there."""
     rest, rise = 1 - at, v1 - v0
     return v0 + at * rise + at * rest * (rest * (d0 - rise) - at * (d1 - rise))
-
-
-def _with_ballast(fixed: ca.SX, names: tuple[str, ...], share: ca.SX, by: By) -> ca.SX:
-    """The robot's parameter vector with platform 2 changed by the ballast."""
-    values = {name: fixed[i] for i, name in enumerate(names)}
-    mass, distance, spread, low, high = ca.vertsplit(fixed[len(names) :])
-    amount = low + share * (high - low)
-    if by == "loads":
-        m, I, c, a = (values[f"{symbol}2"] for symbol in ("m", "I", "c", "a"))
-        values["m2"], values["I2"], reach = hang(m, I, c - a, (mass, distance, spread), amount)
-        values["a2"] = c - reach
-    else:
-        values["I2"] = amount
-    return ca.vertcat(*values.values())
 
 
 class _PeriodTerms:
