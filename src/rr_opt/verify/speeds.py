@@ -179,18 +179,10 @@ def speeds(
     """
     ratios = np.asarray(np.nan if ratio is None else ratio, float)
     inputs = [np.asarray(part, float) for part in (amplitude, offset, ratios)]
-    common = np.broadcast_shapes(*(part.shape for part in inputs))
-    shape = np.broadcast_shapes(common, np.shape(period))
-    common = (1,) * (len(shape) - len(common)) + common
-    periods = shape[-1] if shape and common[-1] == 1 else 1
-    rows = shape[:-1] if periods > 1 else shape
-    alpha, phi0, J = (
-        np.broadcast_to(part.reshape((1,) * (len(shape) - part.ndim) + part.shape), common)
-        for part in inputs
-    )
-    if periods > 1:
-        alpha, phi0, J = (part[..., 0] for part in (alpha, phi0, J))
-    alpha, phi0, J = (np.broadcast_to(part, rows).ravel() for part in (alpha, phi0, J))
+    shape = np.broadcast_shapes(*(part.shape for part in inputs), np.shape(period))
+    alone = shape != () and all(part.shape[-1:] in ((), (1,)) for part in inputs)
+    rows, periods = ((*shape[:-1], 1), shape[-1]) if alone else (shape, 1)
+    alpha, phi0, J = (np.broadcast_to(part, rows).ravel() for part in inputs)
     T = np.broadcast_to(np.asarray(period, float), shape).reshape(len(alpha), periods)
     which, p = _parameters(problem, J)
     found = resolved(model_of(problem.robot), problem.robot, alpha, phi0, T, which, p, tolerance)
