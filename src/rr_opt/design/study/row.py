@@ -118,7 +118,7 @@ def _read(kind: Any, name: str, value: Any) -> Any:
     origin, args = get_origin(kind), get_args(kind)
     if origin is UnionType:
         return None if value is None else _read(args[0], name, value)
-    if is_dataclass(kind):
+    if isinstance(kind, type) and is_dataclass(kind):
         values, kinds = dict(value), get_type_hints(kind)
         for one in fields(kind):
             values[one.name] = _read(kinds[one.name], one.name, values[one.name])
