@@ -200,12 +200,10 @@ def _angle(problem: Problem) -> list[str]:
         widest = 1e3 * (robot.platform1.c + robot.platform2.c)
         asked = f"Limit `singularity` (S1 = c1 cos phi + c2 >= {1e3 * limits.singularity:.6g} mm"
         if math.isinf(reach):
+            less = f"With {of} it falls to {S1:.6g} mm: ask for a margin of at most that."
             clashes.append(
-                f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. With "
-                f"{of} it falls to {S1:.6g} mm: ask for a margin of at most that."
-                if S1 > 0
-                else f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. "
-                "Ask for a smaller margin."
+                f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. "
+                + (less if S1 > 0 else "Ask for a smaller margin.")
             )
         else:
             margin = (
