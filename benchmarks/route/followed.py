@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 import rr_opt as rr
 from benchmarks.results import FOLDER, machine
+from benchmarks.route.follower import Follower
 from benchmarks.route.guided import guided
 from benchmarks.route.problems import ROBOTS, ROUTES, START
 from rr_lab.case import stream
@@ -28,7 +29,7 @@ from rr_opt.model.command import Command, blended
 from rr_opt.model.robot import Robot
 from rr_opt.model.route import Route
 from rr_opt.results.route import DrivenRoute
-from rr_opt.routing.feedback import DELAY, NOISE, Feedback, Follower, apart
+from rr_opt.routing.feedback import DELAY, NOISE, Feedback, apart
 
 MASS, INERTIA, FRICTION = 0.02, 0.05, 0.2
 ROUTE_NAMES = "straight 1 m", "S-bend"

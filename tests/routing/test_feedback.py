@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 import rr_opt as rr
+from benchmarks.route.follower import Follower
 from rr_opt.model.ballast import with_inertia_ratio
 from rr_opt.model.command import blended
 from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.results.route import c_text
-from rr_opt.routing.feedback import DELAY, MARGIN, Follower, apart, moved
+from rr_opt.routing.feedback import DELAY, MARGIN, apart, moved
 from rr_opt.routing.rollout import stepped
 
 PROBLEM = replace(rr.shipped(), inertia_ratio=None).with_robot(

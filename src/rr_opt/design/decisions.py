@@ -53,26 +53,25 @@ class TurnRows:
     @property
     def intervals(self) -> tuple[Interval, ...]:
         """The interval of each row."""
-        rows = []
-        if self.turn.curvature != ANY:
+        asked = {name: getattr(self.turn, name) for name in self.names}
+        rows = {
+            n: Interval(*(end / _size(one) for end in (one.low, one.high)))
+            for n, one in asked.items()
+        }
+        if "curvature" in asked:
             ends = (self.turn.curvature.low, self.turn.curvature.high)
-            rows.append(Interval(*(math.sin(math.atan(end * self.length)) for end in ends)))
-        for asked in (self.turn.yaw_rate, self.turn.heading):
-            if asked != ANY:
-                rows.append(Interval(asked.low / _size(asked), asked.high / _size(asked)))
-        return tuple(rows)
+            rows["curvature"] = Interval(*(math.sin(math.atan(end * self.length)) for end in ends))
+        return tuple(rows.values())
 
     def values(self, speed: Array, turn: Array, period: Array) -> list[Array]:
         """The rows of gaits with this speed (m/s), heading per period (rad) and period (s)."""
-        rows = []
-        if self.turn.curvature != ANY:
-            across = turn / period * self.length
-            rows.append(across / np.maximum(np.hypot(across, speed), _SLOWEST))
-        if self.turn.yaw_rate != ANY:
-            rows.append(turn / period / _size(self.turn.yaw_rate))
-        if self.turn.heading != ANY:
-            rows.append(turn / _size(self.turn.heading))
-        return rows
+        across = turn / period * self.length
+        rows = {
+            "curvature": across / np.maximum(np.hypot(across, speed), _SLOWEST),
+            "yaw_rate": turn / period / _size(self.turn.yaw_rate),
+            "heading": turn / _size(self.turn.heading),
+        }
+        return [rows[name] for name in self.names]
 
     def slopes(self, speed: float, turn: float, period: float) -> dict[str, float]:
         """Derivative of each row by its quantity, at a gait."""

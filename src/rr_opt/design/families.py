@@ -7,7 +7,7 @@ each family is warm-started from the optima of the previous one, and from random
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -231,36 +231,6 @@ _CONSIDERED = 5
 _SHAPES_APART = 0.25
 
 
-@dataclass(frozen=True)
-class _Shapes:
-    """K random shapes, at most as large as the limits on angle and rate allow.
-
-    period, offset, share (K,); sines, cosines (n, K), rad
-    """
-
-    period: Array
-    offset: Array
-    share: Array
-    sines: Array
-    cosines: Array
-
-    def gait(self, k: int) -> FourierGait:
-        """One of them."""
-        return FourierGait(
-            float(self.period[k]),
-            float(self.offset[k]),
-            tuple(self.sines[:, k].tolist()),
-            tuple(self.cosines[:, k].tolist()),
-        )
-
-    def angle(self) -> tuple[Array, Array, Array]:
-        """phi, dphi, ddphi at nodes and halfway between them, (2 N, K)."""
-        theta = 2 * math.pi * np.arange(2 * _PHASES) / (2 * _PHASES)
-        omega = 2 * math.pi / self.period
-        swing, rate, bend = (_waves(self.sines, self.cosines, theta, k) for k in range(3))
-        return self.offset + swing, omega * rate, omega**2 * bend
-
-
 def _scan_shapes(
     setting: Setting, signs: tuple[int, ...], most: int
 ) -> list[tuple[int, FourierGait, float]]:
@@ -271,24 +241,31 @@ def _scan_shapes(
     harmonics = _CONSIDERED if gait.shape == "free" else min(gait.harmonics, _CONSIDERED)
     if decisions(setting.problem).empty or harmonics < 2:
         return []
-    shapes = _random_shapes(setting, harmonics)
+    T, phi0, share, sines, cosines = _random_shapes(setting, harmonics)
+    theta = 2 * math.pi * np.arange(2 * _PHASES) / (2 * _PHASES)
     with np.errstate(all="ignore"):
-        cycles = setting.landscape.along(shapes.angle(), shapes.period, shapes.share)
+        omega = 2 * math.pi / T
+        swing, rate, bend = (_waves(sines, cosines, theta, k) for k in range(3))
+        angle = phi0 + swing, omega * rate, omega**2 * bend
+        cycles = setting.landscape.along(angle, T, share)
         excess = np.maximum(cycles.peak_torque / setting.problem.limits.torque - 1, 0.0)
     known = np.isfinite(cycles.speed + excess) & np.isin(np.sign(cycles.speed), signs)
-    allowed = known & (shapes.sines[0] >= gait.amplitude.low)
+    allowed = known & (sines[0] >= gait.amplitude.low)
     size = np.where(allowed, np.abs(cycles.speed), 0.0)
     merit = np.where(allowed, size - 3 * size.max() * excess, -np.inf)
     if not allowed.any():
-        merit = np.where(known, shapes.sines[0], -np.inf)
-    vectors = np.vstack([shapes.sines, shapes.cosines])
-    return [
-        (int(np.sign(cycles.speed[k])), shapes.gait(k), float(shapes.share[k]))
-        for k in _unlike(merit, vectors / np.linalg.norm(vectors, axis=0), most)
-    ]
+        merit = np.where(known, sines[0], -np.inf)
+    vectors, found = np.vstack([sines, cosines]), []
+    for k in _unlike(merit, vectors / np.linalg.norm(vectors, axis=0), most):
+        coefficients = tuple(sines[:, k].tolist()), tuple(cosines[:, k].tolist())
+        shape = FourierGait(float(T[k]), float(phi0[k]), *coefficients)
+        found.append((int(np.sign(cycles.speed[k])), shape, float(share[k])))
+    return found
 
 
-def _random_shapes(setting: Setting, n: int) -> _Shapes:
+def _random_shapes(setting: Setting, n: int) -> tuple[Array, Array, Array, Array, Array]:
+    """Period (s), offset (rad) and ballast share (K,), sines and cosines (n, K), rad, of random
+    shapes that are at most as large as the limits on angle and rate allow."""
     problem = setting.problem
     box, rng = decisions(problem), np.random.default_rng(0)
     T = box.period.low * (box.period.high / box.period.low) ** rng.random(_SHAPES)
@@ -306,7 +283,7 @@ def _random_shapes(setting: Setting, n: int) -> _Shapes:
     most_swing = np.minimum(problem.gait.amplitude.high, box.reach - np.abs(phi0))
     largest = np.minimum(most_swing / swing, problem.limits.rate * T / (2 * math.pi * rate))
     scale = largest * np.append(np.ones(_TRIANGLES), rng.uniform(0.3, 1.0, _SHAPES - _TRIANGLES))
-    return _Shapes(T, phi0, share, scale * sines, scale * cosines)
+    return T, phi0, share, scale * sines, scale * cosines
 
 
 def _triangle(n: int) -> Array:

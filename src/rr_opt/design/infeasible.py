@@ -8,6 +8,7 @@ gait closest to it. Both searches are a scan, whose resolution is reported, foll
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -19,9 +20,10 @@ from rr_opt.design.decisions import (
     scanned,
     settings_of,
 )
-from rr_opt.design.seeds import THOROUGH, tops
+from rr_opt.design.seeds import tops
 from rr_opt.design.sines import FEWEST, WAYS, climbed
 from rr_opt.design.terrain import STANDS, Aim, Terrain
+from rr_opt.design.transcription import TURN
 from rr_opt.messages import listed
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import ANY, Interval, Problem, Turn
@@ -51,11 +53,14 @@ class Attempt:
     scanned: int
 
 
-def attempt(terrains: list[Terrain]) -> Attempt:
+def attempt(
+    settings: list[Setting], box: Decisions, rows: tuple[str, ...], aim: Aim, way: int
+) -> Attempt:
     """The gait with the least violation, or the first that has none."""
-    best, count = Attempt(terrains[0].setting, np.zeros(4), math.inf, 0), 0
-    for terrain in terrains:
-        points, more = tops(terrain, THOROUGH)
+    best, count = Attempt(settings[0], np.zeros(4), math.inf, 0), 0
+    for setting in settings:
+        terrain = Terrain(setting, scanned(setting, box), way, rows, aim)
+        points, more = tops(terrain, thorough=True)
         count += more
         for start in terrain.box.physical(points).T:
             found = _climbed(terrain, start, FEWEST)
@@ -74,11 +79,7 @@ def _climbed(terrain: Terrain, start: Array, nodes: int) -> Attempt:
 def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | Attempt:
     """Why no gait within angle, rate and singularity satisfies the other limits and the turn; or a
     gait that does."""
-    way = WAYS[problem.direction]
-
-    def seek(rows: tuple[str, ...], aim: Aim, way: int) -> Attempt:
-        return attempt([Terrain(one, scanned(one, box), way, rows, aim) for one in settings])
-
+    way, seek = WAYS[problem.direction], partial(attempt, settings, box)
     found = seek(("torque",), "rows", 0)
     if problem.limits.economy and found.excess <= FEASIBLE:
         found = seek(("torque", "economy"), "rows", 0)
@@ -109,7 +110,6 @@ class Nearest:
 
     speed    signed, m/s
     torque   largest, N m; share: of the ballast's range
-    distance from the turn, relative
     """
 
     gait: SineGait
@@ -119,14 +119,12 @@ class Nearest:
     yaw_rate: float
     heading: float
     torque: float
-    distance: float
 
 
 def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
     """The motion of the gait closest to the turn within all other limits."""
     way, rows = WAYS[problem.direction], ("torque", "economy", "direction")
-    settings = settings_of(problem, box)
-    return _nearest(attempt([Terrain(o, scanned(o, box), way, rows, "turn") for o in settings]))
+    return _nearest(attempt(settings_of(problem, box), box, rows, "turn", way))
 
 
 def _evidence(found: Attempt, box: Decisions) -> str:
@@ -202,12 +200,10 @@ def _angle(problem: Problem) -> list[str]:
         widest = 1e3 * (robot.platform1.c + robot.platform2.c)
         asked = f"Limit `singularity` (S1 = c1 cos phi + c2 >= {1e3 * limits.singularity:.6g} mm"
         if math.isinf(reach):
+            less = f"With {of} it falls to {S1:.6g} mm: ask for a margin of at most that."
             clashes.append(
-                f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. With "
-                f"{of} it falls to {S1:.6g} mm: ask for a margin of at most that."
-                if S1 > 0
-                else f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. "
-                "Ask for a smaller margin."
+                f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. "
+                + (less if S1 > 0 else "Ask for a smaller margin.")
             )
         else:
             margin = (
@@ -279,7 +275,6 @@ def _nearest(found: Attempt) -> Nearest:
         yaw_rate=turn / period,
         heading=turn,
         torque=float(cycle.peak_torque[0]),
-        distance=found.excess,
     )
 
 
@@ -335,52 +330,37 @@ def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:
 
 def _asked_text(turn: Turn) -> str:
     """The request, in words."""
-    parts = []
-    if turn.curvature != ANY:
-        parts.append(_radius(_binding(turn.curvature), not turn.curvature.fixed))
-    if turn.yaw_rate != ANY:
-        rate = _binding(turn.yaw_rate)
-        parts.append(f"at least {abs(rate):.4g} rad/s to the {_side(rate)}")
-    if turn.heading != ANY:
-        each = _binding(turn.heading)
-        parts.append(f"{abs(each):.4g} rad a period to the {_side(each)}")
-    return " with ".join(parts)
+    bounds = {"curvature": "" if turn.curvature.fixed else "at most ", "yaw_rate": "at least "}
+    asked = {name: getattr(turn, name) for name in TURN}
+    return " with ".join(
+        _turn_text(name, _binding(one), bounds.get(name, ""))
+        for name, one in asked.items()
+        if one != ANY
+    )
 
 
 def _reached_text(turn: Turn, nearest: Nearest) -> str:
     """The closest reachable value in words, rounded to the feasible side."""
     parts = []
-    for name, asked in (
-        ("curvature", turn.curvature),
-        ("yaw_rate", turn.yaw_rate),
-        ("heading", turn.heading),
-    ):
-        if asked == ANY:
-            continue
-        value = getattr(nearest, name)
-        # Rounding towards the request would be infeasible.
-        value *= 1 - math.copysign(SURE, (asked.clip(value) - value) * value)
-        text = {
-            "curvature": _radius(value, False),
-            "yaw_rate": f"{abs(value):.4g} rad/s to the {_side(value)}",
-            "heading": f"{abs(value):.4g} rad a period to the {_side(value)}",
-        }
-        parts.append(text[name])
+    for name in TURN:
+        asked, value = getattr(turn, name), getattr(nearest, name)
+        if asked != ANY:
+            # Rounding towards the request would be infeasible.
+            value *= 1 - math.copysign(SURE, (asked.clip(value) - value) * value)
+            parts.append(_turn_text(name, value))
     return " with ".join(parts)
 
 
-def _side(value: float) -> str:
-    """Which way a positive or negative turn goes."""
-    return "left" if value > 0 else "right"
+def _turn_text(name: str, value: float, bound: str = "") -> str:
+    """`a radius of 0.3 m to the left`; bound: such as `at most `."""
+    side = "left" if value > 0 else "right"
+    if name == "curvature":
+        return f"a radius of {bound}{abs(1 / value):.4g} m to the {side}"
+    unit = {"yaw_rate": "rad/s", "heading": "rad a period"}[name]
+    return f"{bound}{abs(value):.4g} {unit} to the {side}"
 
 
 def _binding(asked: Interval) -> float:
     """The binding end of an interval: a finite one, the nearest to straight."""
     ends = [end for end in (asked.low, asked.high) if math.isfinite(end)]
     return min(ends, key=abs)
-
-
-def _radius(curvature: float, at_most: bool) -> str:
-    """`a radius of 0.3 m to the left`."""
-    most = "at most " if at_most else ""
-    return f"a radius of {most}{abs(1 / curvature):.4g} m to the {_side(curvature)}"

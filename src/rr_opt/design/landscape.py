@@ -12,6 +12,7 @@ import ctypes
 import math
 from dataclasses import dataclass, fields
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -97,7 +98,8 @@ class Landscape:
         self._values = list(dynamics.values(robot))
         self._names, self._effects = dynamics.parameters, dynamics.effects
         self.linear = dynamics.linear
-        self._robot, self._by, self._range = robot, by, (ballast.low, ballast.high)
+        self._by: By = by
+        self._range = ballast.low, ballast.high
         self.loads = loads
 
     def cycles(self, gaits: Array, nodes: int) -> Cycles:
@@ -167,13 +169,7 @@ class Landscape:
         low, high = self._range
         amount = low + share * (high - low)
         values = dict(zip(self._names, self._values, strict=True))
-        if self._by == "loads":
-            two = self._robot.platform2
-            m, I, reach = hang(two.m, two.I, two.joint_to_centre, self.loads.each, amount)
-            values |= {"m2": m, "I2": I, "a2": two.c - reach}
-        else:
-            values["I2"] = amount
-        return list(values.values())
+        return list(ballasted(values, self._by, self.loads.each, amount).values())
 
     def _close_by_lines(self, angle: tuple[Array, ...], p: list, h: Array) -> Array:
         """v at the nodes of the cycle, for friction that is not viscous.
@@ -199,6 +195,18 @@ class Landscape:
             if np.all(change < _SETTLED):
                 break
         return np.where(change < _SETTLED, v, settled)[::2]
+
+
+def ballasted(
+    values: dict[str, Any], by: By, each: tuple[Any, Any, Any], amount: Any
+) -> dict[str, Any]:
+    """A robot's parameters, numbers or expressions, with the ballast on platform 2: this number of
+    loads, each as in `hang`, or this I2 (kg m2)."""
+    if by == "inertia":
+        return values | {"I2": amount}
+    m, I, c, a = (values[f"{symbol}2"] for symbol in ("m", "I", "c", "a"))
+    m, I, reach = hang(m, I, c - a, each, amount)
+    return values | {"m2": m, "I2": I, "a2": c - reach}
 
 
 def _angle(gaits: Array, phases: int) -> tuple[Array, Array, Array]:

@@ -33,16 +33,17 @@ ten seconds instead of one, for code that is less than twice as fast.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import casadi as ca
 
+from rr_opt.design.landscape import ballasted
 from rr_opt.design.shapes import Shape
 from rr_opt.design.transcription import COMMON, DYNAMIC, GRIPS, MEANS, ROWS, ProgramLayout
 from rr_opt.mechanics.compile_cache import WhenItPays, externals
 from rr_opt.mechanics.runge_kutta import BUTCHER6
-from rr_opt.model.ballast import By, hang
+from rr_opt.model.ballast import By
 from rr_opt.motion.dynamics import Dynamics, derive
 
 _IPOPT = {
@@ -108,10 +109,11 @@ class IntervalTerms:
         fixed = ca.SX.sym("fixed", len(parameters) + 5)
         theta, width = ca.SX.sym("theta"), ca.SX.sym("width")
         decided = _named(COMMON + shape.decisions, z)
-        values = _with_ballast(fixed, parameters, decided["ballast"], by)
-        interval = _Interval(
-            derive(effects), shape, values, decided, _named(local_names, local), theta, width
-        )
+        *robot, mass, distance, spread, low, high = ca.vertsplit(fixed)
+        amount, each = low + decided["ballast"] * (high - low), (mass, distance, spread)
+        values = ballasted(dict(zip(parameters, robot, strict=True)), by, each, amount)
+        own, p = _named(local_names, local), ca.vertcat(*values.values())
+        interval = _Interval(derive(effects), shape, p, decided, own, theta, width)
         end = interval.end(substeps)
         out = ca.cse(
             ca.vertcat(
@@ -210,20 +212,6 @@ def _cubic(at: ca.SX, v0: ca.SX, v1: ca.SX, d0: ca.SX, d1: ca.SX) -> ca.SX:
     return v0 + at * rise + at * rest * (rest * (d0 - rise) - at * (d1 - rise))
 
 
-def _with_ballast(fixed: ca.SX, names: tuple[str, ...], share: ca.SX, by: By) -> ca.SX:
-    """The robot's parameter vector with platform 2 changed by the ballast."""
-    values = {name: fixed[i] for i, name in enumerate(names)}
-    mass, distance, spread, low, high = ca.vertsplit(fixed[len(names) :])
-    amount = low + share * (high - low)
-    if by == "loads":
-        m, I, c, a = (values[f"{symbol}2"] for symbol in ("m", "I", "c", "a"))
-        values["m2"], values["I2"], reach = hang(m, I, c - a, (mass, distance, spread), amount)
-        values["a2"] = c - reach
-    else:
-        values["I2"] = amount
-    return ca.vertcat(*values.values())
-
-
 class _PeriodTerms:
     """The limits of a shape and the rows of ROWS.
 
@@ -275,20 +263,16 @@ class Shooting:
     layout: ProgramLayout
     terms: IntervalTerms
 
-    @cached_property
-    def solver(self) -> ca.Function:
-        """The solver on CasADi's virtual machine."""
-        return _Program(self.layout, self.terms, self.terms.functions).solver()
-
     @property
-    def fastest(self) -> ca.Function:
-        """The solver as machine code, where available."""
-        return self.solver if self.terms.compiled.code(0) is None else self._compiled
+    def solver(self) -> ca.Function:
+        """The solver as machine code, where available; else on CasADi's virtual machine."""
+        functions = self.terms.compiled.code(0) or self.terms.functions
+        return _solver(self.layout, self.terms, functions)
 
-    @cached_property
-    def _compiled(self) -> ca.Function:
-        compiled = self.terms.compiled.code(0) or self.terms.functions
-        return _Program(self.layout, self.terms, compiled).solver()
+
+@lru_cache
+def _solver(layout: ProgramLayout, terms: IntervalTerms, functions: Functions) -> ca.Function:
+    return _Program(layout, terms, functions).solver()
 
 
 @lru_cache
@@ -373,20 +357,13 @@ class _Program:
         nl, outputs = len(self.layout.local), self.terms.slopes.size1()
         slopes = self.functions.jacobian.map(n)(*self.per_node, self.z, self.fixed)
 
-        def node_by_node(row: int) -> list[ca.MX]:
-            known = self.terms.slopes
-            return [
-                ca.diag(slopes[row, j::wrt]) if known.has_nz(row, j) else ca.MX(n, n)
-                for j in range(nl)
-            ]
-
         def along(row: int, blocks: list[ca.MX]) -> ca.MX:
             to_z = ca.horzcat(*(slopes[row, j::wrt].T for j in range(nl, wrt)))
             return ca.horzcat(to_z, ca.MX(n, nm), *blocks)
 
         rows = []
         for i in range(self.states):
-            blocks = node_by_node(i)
+            blocks = self._diagonal(slopes, self.terms.slopes, i)
             blocks[i] -= self.shift
             rows.append(along(i, blocks))
         sums = slice(self.states, self.states + nm)
@@ -399,7 +376,10 @@ class _Program:
         )
         to_z, to_mean = self.terms.period.slopes(*self.per_period)
         rows.append(ca.horzcat(to_z, to_mean, ca.MX(to_z.size1(), nl * n)))
-        rows += [along(row, node_by_node(row)) for row in range(sums.stop, outputs)]
+        rows += [
+            along(row, self._diagonal(slopes, self.terms.slopes, row))
+            for row in range(sums.stop, outputs)
+        ]
         return ca.vertcat(*rows)
 
     def _hessian(self, lam_f: ca.MX, lam_g: ca.MX) -> ca.MX:
@@ -423,11 +403,14 @@ class _Program:
             ca.horzcat(ca.MX(nm, nz), limit_mean + lam_f * of_mean, ca.MX(nm, nl * n)),
         ]
         for i in range(nl):
-            blocks = [
-                ca.diag(curves[i, j::wrt])
-                if j >= i and self.terms.curves.has_nz(i, j)
-                else ca.MX(n, n)
-                for j in range(nl)
-            ]
+            blocks = self._diagonal(curves, self.terms.curves, i, first=i)
             rows.append(ca.horzcat(ca.MX(n, nz + nm), *blocks))
         return ca.vertcat(*rows)
+
+    def _diagonal(self, values: ca.MX, known: ca.Sparsity, row: int, first: int = 0) -> list[ca.MX]:
+        """Blocks of a row by local unknowns, from the first of them on: each node's by its own."""
+        n, wrt = self.layout.intervals, self.wrt
+        return [
+            ca.diag(values[row, j::wrt]) if j >= first and known.has_nz(row, j) else ca.MX(n, n)
+            for j in range(len(self.layout.local))
+        ]

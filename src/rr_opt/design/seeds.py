@@ -55,30 +55,24 @@ _WORTH = 0.5
 _MOST = 12
 
 
-@dataclass(frozen=True)
-class Patience:
-    """points   factor on the default numbers of points and climbers"""
-
-    points: int = 1
-    climbers: int = 1
+_PATIENT = 16, 4
+"""Factors on the numbers of points and of climbers for a thorough search."""
 
 
-USUAL, THOROUGH = Patience(), Patience(16, 4)
-
-
-def tops(terrain: Terrain, patience: Patience = USUAL) -> tuple[Array, int]:
+def tops(terrain: Terrain, *, thorough: bool = False) -> tuple[Array, int]:
     """Points (K, 4) of the unit box, best first, each a local optimum of the coarse landscape; and
     how many points were scanned."""
     box, free = terrain.box, terrain.box.free
     coarse, finer = (partial(terrain.over, nodes=n) for n in (_NODES, _FINER_NODES))
-    points = scan(box, patience.points * _POINTS[len(free)])
+    more, wider = _PATIENT if thorough else (1, 1)
+    points = scan(box, more * _POINTS[len(free)])
     count = len(points)
     if box.turn and "turn" in terrain.rows:
-        points = np.concatenate([points, _crossings(points[: _LINES * patience.climbers], terrain)])
+        points = np.concatenate([points, _crossings(points[: _LINES * wider], terrain)])
     seen = coarse(points)
     unit = _unit(terrain, seen)
     light, strict = (terrain.merit(unit, _LIGHT, turn) for turn in (_LIGHT, _STRICT))
-    most = patience.climbers * _CLIMBERS[len(free)]
+    most = wider * _CLIMBERS[len(free)]
     rough = []
     for merit in (light, strict) if "turn" in terrain.rows and box.turn else (strict,):
         chosen = _peaks(points[:, free], merit(seen), most)

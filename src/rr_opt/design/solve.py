@@ -60,7 +60,7 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
     )
     lbx, ubx, lbg, ubg = _bounds(setting, layout, mesh.margin)
     x0 = _start(setting.landscape, layout, gait, share, mesh.phases)
-    solver = program.fastest
+    solver = program.solver
     result = solver(x0=np.clip(x0, lbx, ubx), p=p, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
     stats = solver.stats()
     program.terms.compiled.code((1 + int(stats["iter_count"])) * mesh.intervals)

@@ -209,13 +209,16 @@ class Terrain:
         radius."""
         box, gait = self.box, self.setting.problem.gait
         share = 0.0 if box.ballast.fixed else self.setting.fixed_share
+        radii = Interval(0.0, 0.0)
+        if self._radius:
+            radii = _ANY_RADIUS if self.aim == "turn" else Interval(self._asked, self._asked)
         boxes = (
             Interval(*[gait.amplitude.low] * 2) if box.amplitude_pinned else gait.amplitude,
             box.period if box.period.fixed else gait.period,
             box.offset if box.offset.fixed else gait.offset,
             Interval(0.0, 1.0) if share is None else Interval(share, share),
             _ANY_WAY if self._radius else Interval(0.0, 0.0),
-            self._radii,
+            radii,
         )
         low, high = np.array([(one.low, one.high) for one in boxes]).T
         return low, high
@@ -363,13 +366,6 @@ class Terrain:
         others = self.aim == "turn" and len(self.box.turn.names) > 1
         asked = self.box.turn.turn.curvature
         return 1 / asked.low if asked.fixed and asked.low and not others else 0.0
-
-    @property
-    def _radii(self) -> Interval:
-        """Bounds on the logarithm of the radius (m)."""
-        if not self._radius:
-            return Interval(0.0, 0.0)
-        return _ANY_RADIUS if self.aim == "turn" else Interval(self._asked, self._asked)
 
     @property
     def _asked(self) -> float:

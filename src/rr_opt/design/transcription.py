@@ -208,11 +208,7 @@ class ProgramLayout:
         along: tuple[str, ...],
         tied: int,
     ) -> tuple[Array, Array]:
-        intervals = [given.get(name, FREE) for name in once]
-        for name in along:
-            intervals += [given.get(name, FREE)] * self.intervals
-        intervals = [ZERO] * tied + intervals
-        return (
-            np.array([interval.low for interval in intervals]),
-            np.array([interval.high for interval in intervals]),
-        )
+        names = *once, *(name for name in along for _ in range(self.intervals))
+        intervals = [ZERO] * tied + [given.get(name, FREE) for name in names]
+        low, high = np.array([(one.low, one.high) for one in intervals]).T
+        return low, high

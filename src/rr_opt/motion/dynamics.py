@@ -10,6 +10,7 @@ the servo makes of its command, what the floor does in one place and not another
 capture system makes of the motion.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -185,37 +186,29 @@ def _derived(effects: tuple[str, ...]) -> Dynamics:
         ca.substitute(part, v, v / share)
         for part in (share * solved, needed, kinetic, power, w, side)
     )
-    inputs = [v, phi, dphi, ddphi, p]
-    names = ["v", "phi", "dphi", "ddphi", "p"]
-    outputs, loads = _tidy(solved, w, side, needed[3]), wheel_loads(robot.parameters)
-    motion = ca.Function("motion", inputs, outputs, names, ["vdot", "w", "side", "torque"])
+    state = {"v": v, "phi": phi, "dphi": dphi, "p": p}
+    moving = {"v": v, "phi": phi, "dphi": dphi, "ddphi": ddphi, "p": p}
+    outputs = {"vdot": solved, "w": w, "side": side, "torque": needed[3]}
+    motion = function("motion", moving, outputs)
+    grips = {
+        f"grip{k}": needed[k] / (2 * load) for k, load in wheel_loads(robot.parameters).items()
+    }
     return Dynamics(
         effects=effects,
         parameters=assembly.parameters,
         motion=motion,
-        energy=ca.Function(
-            "energy",
-            [v, phi, dphi, p],
-            _tidy(kinetic, -power),
-            ["v", "phi", "dphi", "p"],
-            ["kinetic", "dissipation"],
-        ),
-        sides=ca.Function("sides", inputs, _tidy(needed[1], needed[2]), names, ["F1", "F2"]),
-        grip=ca.Function(
-            "grip",
-            inputs,
-            _tidy(*(needed[axle] / (2 * load) for axle, load in loads.items())),
-            names,
-            ["grip1", "grip2"],
-        ),
-        linear=_is_affine(ca.Function("vdot", inputs, [solved])),
+        energy=function("energy", state, {"kinetic": kinetic, "dissipation": -power}),
+        sides=function("sides", moving, {"F1": needed[1], "F2": needed[2]}),
+        grip=function("grip", moving, grips),
+        linear=_is_affine(ca.Function("vdot", [*moving.values()], [solved])),
         mirrored=_is_mirrored(motion),
     )
 
 
-def _tidy(*expressions: ca.SX) -> list[ca.SX]:
-    """The same expressions with common parts computed once."""
-    return ca.vertsplit(ca.cse(ca.vertcat(*expressions)))
+def function(name: str, inputs: Mapping[str, ca.SX], outputs: Mapping[str, ca.SX]) -> ca.Function:
+    """A function of named scalars, with the common parts of its outputs computed once."""
+    tidy = ca.vertsplit(ca.cse(ca.vertcat(*outputs.values())))
+    return ca.Function(name, [*inputs.values()], tidy, [*inputs], [*outputs])
 
 
 def _is_affine(vdot: ca.Function) -> bool:

@@ -20,7 +20,7 @@ While the servo exerts no torque phi is free, and the joint obeys
 of which the first is affine in ddphi. An impact on the joint changes dphi at once and z not at all.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -109,27 +109,21 @@ def solved(assembly: Assembly) -> FloorMotion:
     state, p = ca.vertcat(robot.pose, z), assembly.p
     drive = ca.vertcat(phi, dphi, ddphi) if slips else ca.vertcat(phi, dphi)
     given = ca.SX.sym("ddphi")
-    names = ["state", "drive", "p"]
+    torque = ca.substitute(torque, ddphi, given)
+    inputs = {"state": state, "drive": drive, "p": p}
+    loaded = {"state": state, "drive": drive, "ddphi": given, "p": p}
+
+    def function(name: str, output: ca.SX, inputs: Mapping[str, ca.SX] = inputs) -> ca.Function:
+        return ca.Function(name, [*inputs.values()], [output], [*inputs], [name])
+
     return FloorMotion(
         effects=assembly.effects,
         free=tuple(SPEEDS[k] for k in free),
         parameters=assembly.parameters,
-        rates=ca.Function("rates", [state, drive, p], [rates], names, ["rates"]),
-        observed=ca.Function(
-            "seen",
-            [state, drive, p],
-            [ca.vertcat(seen.x, seen.y, seen.psi, seen.phi)],
-            names,
-            ["seen"],
-        ),
-        speeds=ca.Function("speeds", [state, drive, p], [shown], names, ["speeds"]),
-        torque=ca.Function(
-            "torque",
-            [state, drive, given, p],
-            [ca.substitute(torque, ddphi, given)],
-            ["state", "drive", "ddphi", "p"],
-            ["torque"],
-        ),
+        rates=function("rates", rates),
+        observed=function("seen", ca.vertcat(seen.x, seen.y, seen.psi, seen.phi)),
+        speeds=function("speeds", shown),
+        torque=function("torque", torque, loaded),
     )
 
 

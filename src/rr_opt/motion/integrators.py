@@ -9,7 +9,6 @@ them all, and gaits of one form share what is compiled from it. A smooth gait is
 """
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 
 import casadi as ca
@@ -41,49 +40,39 @@ order 12 and solves no linear system, was 1.4 to 4 times faster than BDF, of ord
 faster or slower (Hindmarsh et al., SUNDIALS, 2005)."""
 
 
-@dataclass(frozen=True)
-class _Form:
-    """How phi is written on a piece: as a Fourier series, or as a parabola if `harmonics` is 0.
+def _command(harmonics: int, t: ca.SX, coefficients: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """phi (rad), dphi/dt (rad/s) and d2phi/dt2 (rad/s2) on a piece at t (s), from `_pieces`."""
+    if not harmonics:
+        angle, rate, acceleration = ca.vertsplit(coefficients)
+        return angle + t * (rate + t * acceleration / 2), rate + t * acceleration, acceleration
+    period, offset, *amplitudes = ca.vertsplit(coefficients)
+    phi, dphi, ddphi = offset, ca.SX(0), ca.SX(0)
+    for n in range(1, harmonics + 1):
+        omega = 2 * math.pi * n / period
+        sine, cosine = amplitudes[n - 1], amplitudes[harmonics + n - 1]
+        s, c = ca.sin(omega * t), ca.cos(omega * t)
+        phi += sine * s + cosine * c
+        dphi += omega * (sine * c - cosine * s)
+        ddphi -= omega**2 * (sine * s + cosine * c)
+    return phi, dphi, ddphi
 
-    The coefficients are period, offset, sines and cosines, with t = 0 where the gait begins; or
-    phi, its rate and its acceleration at t = 0, where the piece begins.
+
+def _pieces(gait: Gait) -> tuple[int, Array]:
+    """The harmonics of a gait that is a Fourier series, 0 if it consists of parabolas, and the
+    coefficients of each piece, (.., gait.pieces).
+
+    They are period, offset, sines and cosines, with t = 0 where the gait begins; or phi, its rate
+    and its acceleration at t = 0, where the piece begins.
     """
-
-    harmonics: int = 0
-
-    @property
-    def size(self) -> int:
-        """Number of coefficients."""
-        return 2 + 2 * self.harmonics if self.harmonics else 3
-
-    def command(self, t: ca.SX, coefficients: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-        """phi (rad), dphi/dt (rad/s) and d2phi/dt2 (rad/s2) at t (s)."""
-        if not self.harmonics:
-            angle, rate, acceleration = ca.vertsplit(coefficients)
-            return angle + t * (rate + t * acceleration / 2), rate + t * acceleration, acceleration
-        period, offset, *amplitudes = ca.vertsplit(coefficients)
-        phi, dphi, ddphi = offset, ca.SX(0), ca.SX(0)
-        for n in range(1, self.harmonics + 1):
-            omega = 2 * math.pi * n / period
-            sine, cosine = amplitudes[n - 1], amplitudes[self.harmonics + n - 1]
-            s, c = ca.sin(omega * t), ca.cos(omega * t)
-            phi += sine * s + cosine * c
-            dphi += omega * (sine * c - cosine * s)
-            ddphi -= omega**2 * (sine * s + cosine * c)
-        return phi, dphi, ddphi
-
-
-def _pieces(gait: Gait) -> tuple[_Form, Array]:
-    """The form of a gait, and the coefficients of each piece, (form.size, gait.pieces)."""
     match gait:
         case SineGait():
-            return _Form(1), np.array([[gait.period], [gait.offset], [gait.amplitude], [0.0]])
+            return 1, np.array([[gait.period], [gait.offset], [gait.amplitude], [0.0]])
         case FourierGait():
             coefficients = [gait.period, gait.offset, *gait.sines, *gait.cosines]
-            return _Form(gait.harmonics), np.array(coefficients)[:, None]
+            return gait.harmonics, np.array(coefficients)[:, None]
         case FreeGait():
             angles, rates = gait.nodes
-            return _Form(), np.array([angles[:-1], rates[:-1], gait.accelerations])
+            return 0, np.array([angles[:-1], rates[:-1], gait.accelerations])
         case _:
             raise TypeError(f"no expression is known for a gait of shape {gait.shape!r}")
 
@@ -99,11 +88,11 @@ def fixed_steps(
     """States (5, n + 1) over one period from v(0) = v0, at n = whole_steps(gait, steps), or a
     multiple of it that is stable."""
     dynamics = dynamics_of(robot)
-    form, coefficients = _pieces(gait)
+    harmonics, coefficients = _pieces(gait)
     n = whole_steps(gait, steps)
     n *= max(math.ceil(_fastest_decay(robot, gait) * gait.period / n / _STABLE), 1)
     each, h = n // gait.pieces, gait.period / n
-    path = _path(dynamics.effects, form, method, n)
+    path = _path(dynamics.effects, harmonics, method, n)
     t = np.tile(np.arange(each) * h, gait.pieces)
     values = np.tile(dynamics.values(robot)[:, None], n)
     inputs = np.vstack([np.repeat(coefficients, each, axis=1), values])
@@ -134,7 +123,7 @@ def cvodes(
     """
     times = np.asarray(times, float)
     dynamics = dynamics_of(robot)
-    form, coefficients = _pieces(gait)
+    harmonics, coefficients = _pieces(gait)
     values = dynamics.values(robot)
     stiff = not dynamics.linear or _fastest_decay(robot, gait) * gait.period > _STIFF
     length = gait.period / gait.pieces if gait.pieces > 1 else float(times[-1])
@@ -147,7 +136,7 @@ def cvodes(
         # Rounded, so that pieces with the same grid share an integrator.
         grid = tuple(np.round(at[inside] - k, 12))
         grid += () if grid and grid[-1] == 1.0 else (1.0,)
-        integrator = _cvodes(dynamics.effects, form, grid, tolerance, stiff)
+        integrator = _cvodes(dynamics.effects, harmonics, grid, tolerance, stiff)
         p = np.concatenate([[length], coefficients[:, k % gait.pieces], values])
         try:
             out = np.asarray(integrator(x0=state, p=p)["xf"])
@@ -167,13 +156,13 @@ def _start(v0: float) -> Array:
 
 
 @lru_cache
-def _path(effects: tuple[str, ...], form: _Form, method: Tableau, steps: int) -> ca.Function:
-    return _stepper(effects, form, method).mapaccum(steps)
+def _path(effects: tuple[str, ...], harmonics: int, method: Tableau, steps: int) -> ca.Function:
+    return _stepper(effects, harmonics, method).mapaccum(steps)
 
 
 @lru_cache
-def _stepper(effects: tuple[str, ...], form: _Form, method: Tableau) -> ca.Function:
-    state, t, p, rhs = _symbols(effects, form)
+def _stepper(effects: tuple[str, ...], harmonics: int, method: Tableau) -> ca.Function:
+    state, t, p, rhs = _symbols(effects, harmonics)
     slope = ca.Function("slope", [state, t, p], [rhs])
     h = ca.SX.sym("h")
     end = method.step(lambda fraction, y: slope(y, t + fraction * h, p), state, h)
@@ -182,10 +171,10 @@ def _stepper(effects: tuple[str, ...], form: _Form, method: Tableau) -> ca.Funct
 
 @lru_cache
 def _cvodes(
-    effects: tuple[str, ...], form: _Form, grid: tuple[float, ...], tolerance: float, stiff: bool
+    effects: tuple[str, ...], harmonics: int, grid: tuple[float, ...], tolerance: float, stiff: bool
 ) -> ca.Function:
     """Time is in lengths of the piece, so that the length is a parameter."""
-    state, t, p, rhs = _symbols(effects, form)
+    state, t, p, rhs = _symbols(effects, harmonics)
     part, length = ca.SX.sym("part"), ca.SX.sym("length")
     ode = length * ca.substitute(rhs, t, part * length)
     dae = {"x": state, "t": part, "p": ca.vertcat(length, p), "ode": ode}
@@ -196,14 +185,15 @@ def _cvodes(
 
 
 @lru_cache
-def _symbols(effects: tuple[str, ...], form: _Form) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+def _symbols(effects: tuple[str, ...], harmonics: int) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
     """State, time, parameters (coefficients of the gait, then the robot's), d(state)/dt."""
     dynamics = derive(effects)
     state = ca.SX.sym("state", len(STATE))
     v, psi, _, _, s = ca.vertsplit(state)
-    t, p = ca.SX.sym("t"), ca.SX.sym("p", form.size + len(dynamics.parameters))
-    command = form.command(t, p[: form.size])
-    vdot, w, side, _ = dynamics.motion(v, *command, p[form.size :])
+    size = 2 + 2 * harmonics if harmonics else 3
+    t, p = ca.SX.sym("t"), ca.SX.sym("p", size + len(dynamics.parameters))
+    command = _command(harmonics, t, p[:size])
+    vdot, w, side, _ = dynamics.motion(v, *command, p[size:])
     rhs = ca.vertcat(
         vdot,
         w,

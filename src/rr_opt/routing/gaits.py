@@ -95,19 +95,13 @@ def chart(problem: Problem, way: Way) -> Chart:
             kept[kept] = np.abs(needed.grips).max(axis=(0, 1)) <= limits.grip
         with np.errstate(divide="ignore", invalid="ignore"):
             curvature = seen.turn / (period * np.abs(seen.speed))
-        gaits = np.broadcast_arrays(amplitude, offset, period)
-        parts.append(
-            (
-                np.stack(gaits),
-                *(np.where(kept, part, np.nan) for part in (np.abs(seen.speed), curvature)),
-            )
-        )
+        speed, curvature = (np.where(kept, x, np.nan) for x in (np.abs(seen.speed), curvature))
+        rows = np.broadcast_arrays(amplitude, offset, period, speed, curvature)
+        parts.append(np.stack(rows))
     if not parts:
         return Chart(problem, way, np.zeros((3, 1, 2)), *np.full((2, 1, 2), np.nan))
-    gaits, speed, curvature = zip(*parts, strict=True)
-    return Chart(
-        problem, way, np.concatenate(gaits, axis=1), np.vstack(speed), np.vstack(curvature)
-    )
+    whole = np.concatenate(parts, axis=1)
+    return Chart(problem, way, whole[:3], *whole[3:])
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,51 +93,39 @@ def _dubins(piece: int, start: Pose, end: Pose, radius: float) -> Iterator[list[
     for first, last in itertools.product((1, -1), repeat=2):
         a = complex(0, first)
         b = complex(ahead, left) + last * 1j * complex(math.cos(turn), math.sin(turn))
-        apart, towards = abs(b - a), math.atan2((b - a).imag, (b - a).real)
-        if first == last:
-            headings = [(first, towards, 0)]
-        elif apart >= 2:
-            headings = [(first, towards + first * math.asin(2 / apart), 0)]
-        else:
-            headings = []
-        if first == last and 0 < apart <= 4:
+        apart, towards, same = abs(b - a), math.atan2((b - a).imag, (b - a).real), first == last
+        # A straight line between the circles: a part's side (0: straight), heading at its end, and
+        # length; an arc's follows from its headings.
+        if same or apart >= 2:
+            heading = towards if same else towards + first * math.asin(2 / apart)
+            length = math.sqrt(max(apart**2 - (0 if same else 4), 0.0))
+            parts = (first, heading, 0.0), (0, heading, length), (last, turn, 0.0)
+            yield _joined(piece, start, radius, parts)
+        if same and 0 < apart <= 4:
             bend = math.acos(apart / 4)
             # The middle circle touches both; there are two positions for it.
-            headings += [
-                (first, towards + side * bend + first * math.pi / 2, -first) for side in (1, -1)
-            ]
-        for sign, heading, middle in headings:
-            yield from _joined(piece, start, radius, (sign, heading, middle, last, turn, a, b))
+            for side in (1, -1):
+                heading = towards + side * bend + first * math.pi / 2
+                # At the tangent points the heading is perpendicular to the line of centres.
+                across = heading - first * math.pi / 2
+                to = (b - (a + 2 * complex(math.cos(across), math.sin(across)))) / 2
+                out = math.atan2(to.imag, to.real) - first * math.pi / 2
+                parts = (first, heading, 0.0), (-first, out, 0.0), (last, turn, 0.0)
+                yield _joined(piece, start, radius, parts)
 
 
-def _joined(piece: int, start: Pose, radius: float, path: tuple) -> Iterator[list[Leg]]:
-    first, heading, middle, last, turn, a, b = path
-    k = 1 / radius
-    around = 2 * math.pi
-    if middle == 0:
-        arc = (first * heading) % around
-        length = math.sqrt(max(abs(b - a) ** 2 - (0 if first == last else 4), 0.0))
-        parts = [(first * k, arc), (0.0, length), (last * k, (last * (turn - heading)) % around)]
-    else:
-        # At the first tangent point the heading is perpendicular to the line of centres.
-        arc = (first * heading) % around
-        centre = a + 2 * complex(
-            math.cos(heading - first * math.pi / 2), math.sin(heading - first * math.pi / 2)
-        )
-        to = (b - centre) / 2
-        out = math.atan2(to.imag, to.real) + middle * math.pi / 2
-        parts = [
-            (first * k, arc),
-            (middle * k, (middle * (out - heading)) % around),
-            (last * k, (last * (turn - out)) % around),
-        ]
-    legs, pose = list[Leg](), start
-    for curvature, radii in parts:
+def _joined(
+    piece: int, start: Pose, radius: float, parts: Iterable[tuple[int, float, float]]
+) -> list[Leg]:
+    """The legs of parts, in units of the radius."""
+    legs, pose, before, around = list[Leg](), start, 0.0, 2 * math.pi
+    for side, heading, straight in parts:
+        arc = (side * (heading - before)) % around
         # A full turn that rounding made of zero.
-        length = 0.0 if curvature and around - radii < 1e-9 else radii
-        legs.append(Leg(piece, pose, length * radius, curvature))
-        pose = legs[-1].end
-    yield legs
+        length = (0.0 if around - arc < 1e-9 else arc) if side else straight
+        legs.append(Leg(piece, pose, length * radius, side / radius))
+        pose, before = legs[-1].end, heading
+    return legs
 
 
 def signed_distance(leg: Leg, x: Array, y: Array) -> tuple[Array, Array, Array]:

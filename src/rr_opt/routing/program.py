@@ -109,11 +109,6 @@ class DriveStage:
     fewest: float = 0.05
     straight: bool = False
 
-    @property
-    def coasts(self) -> bool:
-        """Whether the joint is held still."""
-        return self.fixed and self.amplitude == 0
-
 
 @dataclass(frozen=True)
 class SolvedDrive:
@@ -272,22 +267,19 @@ class DriveProgram:
 
     def slopes(self, command: Command) -> Array:
         """Derivatives (8, N, z) of the command's segments by the unknowns."""
-        n = len(self.stages)
-        d = np.zeros((8, 2 * n, n * _UNKNOWNS))
-        for k in range(n):
-            for row in range(3):
-                own = k * _UNKNOWNS + 1 + row
-                d[3 + row, 2 * k, own] = d[row, 2 * k + 1, own] = d[3 + row, 2 * k + 1, own] = 1
-                if k:
-                    d[row, 2 * k, own - _UNKNOWNS] = 1
-        d[2, 0, 3] = 1
-        u = command.segments
-        both = u[2] + u[5]
-        d[7] = -(d[2] + d[5]) * (u[7] / both)[:, None]
-        for k in range(n):
-            d[7, 2 * k + 1, k * _UNKNOWNS] = 4 * math.pi / both[2 * k + 1]
-            d[6, 2 * k + 2 :, k * _UNKNOWNS] = 2 * math.pi
-        return d
+        n, u = len(self.stages), command.segments
+        # By the unknowns of each stage. Its first segment, a blend, begins as the one before ends.
+        d, own, both = np.zeros((8, 2 * n, n, _UNKNOWNS)), np.eye(n), u[2] + u[5]
+        for row in range(3):
+            d[row, 1::2, :, 1 + row] = d[3 + row, ::2, :, 1 + row] = d[
+                3 + row, 1::2, :, 1 + row
+            ] = own
+            d[row, 2::2, :, 1 + row] = own[:-1]
+        d[2, 0, 0, 3] = 1
+        d[7] = -(d[2] + d[5]) * (u[7] / both)[:, None, None]
+        d[7, 1::2, :, 0] = np.diag(4 * math.pi / both[1::2])
+        d[6, :, :, 0] = 2 * math.pi * (np.arange(n) < np.arange(2 * n)[:, None] // 2)
+        return d.reshape(8, 2 * n, -1)
 
     @np.errstate(over="ignore", invalid="ignore")
     def look(self, x: Array, starts: Array | None = None) -> Look:

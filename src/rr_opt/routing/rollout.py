@@ -195,14 +195,8 @@ def _peaks(
     ends = np.cumsum(sizes)
     begins = ends - sizes
     edges = begins[:, None] + sizes[:, None] * np.arange(_PARTS + 1) // _PARTS
-    at = np.stack(
-        [
-            low + signed[:, :, low:high].argmax(axis=2)
-            for row in edges
-            for low, high in itertools.pairwise(row)
-        ],
-        axis=2,
-    )
+    parts = [part for row in edges for part in itertools.pairwise(row)]
+    at = np.stack([low + signed[:, :, low:high].argmax(axis=2) for low, high in parts], axis=2)
     k = np.repeat(np.arange(len(counts)), _PARTS)
     middle = np.clip(at, begins[k] + 2, ends[k] - 3)
     near = (middle[..., None] + np.arange(-2, 3)).reshape(*signed.shape[:2], -1)
@@ -283,10 +277,8 @@ def rollout(
         v, psi, x, y = path[:4, -1]
         dv, dpsi, dx, dy = dpath[:4, -1].copy()
     segment, t, path, dpath = zip(*found, strict=True)
-    peaks, by = (
-        np.zeros((0, len(states), _PARTS, 2)),
-        np.zeros((0, len(states), _PARTS, 2, unknowns)),
-    )
+    none = 0, len(states), _PARTS, 2
+    peaks, by = np.zeros(none), np.zeros((*none, unknowns))
     if loads:
         peaks, by = _peaks(dynamics.effects, p, command.segments, states, loads)
         by = np.einsum("ilkms,kiz->lkmsz", by, np.array(all_inputs), optimize=True)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.mechanics.code_generation import Stages, in_stages, source_file
+from rr_opt.mechanics.code_generation import in_stages, source_file
 from rr_opt.mechanics.compile_cache import library
 from rr_opt.motion.dynamics import Dynamics
 from rr_opt.threads import in_threads
@@ -63,28 +63,6 @@ class Speeds(NamedTuple):
         self.converged[where] = good
         for own, values in zip(self[:3], found[:3], strict=True):
             own[where] = np.where(good, values, np.nan)
-
-
-def viscous_source(powers: ca.Function) -> str:
-    """C code around (phi, p) -> the powers of `steady_fourier`."""
-    return _source(in_stages(powers, "rr", (1, 0)), powers.nnz_in(1), "viscous")
-
-
-def newton_source(dynamics: Dynamics) -> str:
-    """C code around a model's motion and its slope over v.
-
-    Raises NotImplementedError for a model with an operation that has no C equivalent.
-    """
-    outputs = ["vdot", "jac:vdot:v", "w", "side", "torque"]
-    motion = dynamics.motion.factory("tried", dynamics.motion.name_in(), outputs)
-    return _source(in_stages(motion, "rr", (2, 1, 1, 1, 0)), len(dynamics.parameters), "newton")
-
-
-def _source(stages: Stages, parameters: int, loops: str) -> str:
-    sizes = [f"#define NK{k} {kept}\n" for k, kept in enumerate(stages.kept)]
-    lanes, points = (source_file("rr_opt.mechanics", name) for name in ("lanes.c", "gait_points.c"))
-    around = source_file("rr_opt.verify", f"{loops}_cycles.c")
-    return "".join([f"#define NP {parameters}\n", *sizes, lanes, points, stages.source, around])
 
 
 @lru_cache
@@ -184,10 +162,22 @@ def compiled(
     dynamics: Dynamics, powers: ca.Function | None, *, make: bool
 ) -> CompiledCycles | None:
     """The loops of a model, if compiled before, or compiled now if `make`; None where impossible.
-    powers: of `steady_fourier`, where the friction is viscous."""
+
+    powers: (phi, p) -> the powers of `steady_fourier`, where the friction is viscous; else the
+    loops are around the motion and its slope over v.
+    """
     try:
-        source = newton_source(dynamics) if powers is None else viscous_source(powers)
-    except NotImplementedError:
+        if powers is None:
+            outputs = ["vdot", "jac:vdot:v", "w", "side", "torque"]
+            motion = dynamics.motion.factory("tried", dynamics.motion.name_in(), outputs)
+            stages, loops = in_stages(motion, "rr", (2, 1, 1, 1, 0)), "newton_cycles.c"
+        else:
+            stages, loops = in_stages(powers, "rr", (1, 0)), "viscous_cycles.c"
+    except NotImplementedError:  # an operation that has no C equivalent
         return None
-    made = library(source, _FLAGS, make=make)
+    sizes = [f"#define NK{k} {kept}\n" for k, kept in enumerate(stages.kept)]
+    lanes, points = (source_file("rr_opt.mechanics", name) for name in ("lanes.c", "gait_points.c"))
+    head = [f"#define NP {len(dynamics.parameters)}\n", *sizes, lanes, points]
+    around = source_file("rr_opt.verify", loops)
+    made = library("".join([*head, stages.source, around]), _FLAGS, make=make)
     return None if made is None else CompiledCycles(made, powers is not None)

@@ -118,8 +118,7 @@ def evaluate(
     for done in range(0, len(wanted), _ROWS):
         block = wanted[done : done + _ROWS]
         amplitude, period, offset, ratio = (part[block] for part in rows)
-        known = None if grid.ratio is None else ratio[:, :1]
-        found = speeds(problem, amplitude[:, :1], period, offset[:, :1], known, tolerance)
+        found = speeds(problem, amplitude[:, :1], period, offset[:, :1], ratio[:, :1], tolerance)
         speed[block], torque[block], turn[block] = found.speed, found.peak_torque, found.turn
         failed += int((~found.converged & np.isfinite(period)).sum())
         if progress:
@@ -223,8 +222,7 @@ def _torque_line(
         apart = np.maximum(np.log(high / low), 1e-12)
         rise = np.log(limit * (1 - aim) / low) / apart
         middle = inside + np.clip(rise, 0.0, 1.0) * (outside - inside)
-        ratio = None if grid.ratio is None else middle[3]
-        found = speeds(problem, *middle[:3], ratio, tolerance)
+        found = speeds(problem, *middle, tolerance)
         good = found.peak_torque <= limit
         worse = found.peak_torque > limit
         best[:, good] = np.array([*middle, found.speed, found.peak_torque, found.turn])[:, good]

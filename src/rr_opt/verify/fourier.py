@@ -175,14 +175,9 @@ _NEAR = (-2, -1, 0, 1, 2, 3)
 """Samples, relative to the start of a step, that interpolate the integrand."""
 
 
-def _weights() -> Array:
-    """Quadrature weights of the samples _NEAR over a step of length 1: exact for polynomials."""
-    powers = np.arange(len(_NEAR))
-    moments = np.array(_NEAR, float) ** powers[:, None]
-    return np.asarray(np.linalg.solve(moments, 1 / (powers + 1.0)), float)
-
-
-_WEIGHTS = _weights()
+_POWERS = np.arange(len(_NEAR))
+_WEIGHTS = np.linalg.solve(np.array(_NEAR, float) ** _POWERS[:, None], 1 / (_POWERS + 1.0))
+"""Quadrature weights of the samples _NEAR over a step of length 1: exact for polynomials."""
 
 
 def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array, Array]:

@@ -29,54 +29,6 @@ SAFETY = 0.25
 samples depends on where these fall, and may underestimate the error."""
 
 
-def by_series(
-    compiled: CompiledCycles,
-    points: Points,
-    p: Array,
-    straight: bool,
-    first: int,
-    fewest: Array,
-    worst: float,
-    at: _Places,
-    into: Speeds,
-) -> int:
-    """Viscous friction: written to the places `at` where the error is at most `worst`.
-
-    first: initial samples; fewest: samples needed to resolve a point (K,). Returns the number of
-    samples with which NumPy is to continue for the rest.
-    """
-    pending, n = np.arange(len(points.period)), first
-    while len(pending) and n <= compiled.most:
-        now = pending[fewest[pending] <= n]
-        if len(now):
-            found = compiled.viscous(points.only(now), p, n, straight)
-            into.keep((at[0][now], at[1][now]), found, found.error <= worst)
-            pending = pending[~into.converged[at][pending]]
-        n *= 2
-    return n
-
-
-def by_newton(
-    compiled: CompiledCycles,
-    points: Points,
-    p: Array,
-    straight: bool,
-    first: int,
-    tolerance: float,
-    at: _Places,
-    into: Speeds,
-) -> None:
-    """Any friction: written to the places `at` where it is resolved to the tolerance."""
-    pending, n = np.arange(len(points.period)), first
-    while len(pending) and n < MOST * (1 if straight else 2):
-        # Points that need many samples are grouped, as all points of a vector register take as many
-        # as the worst.
-        n *= 4
-        found = compiled.newton(points.only(pending), p, first, n, straight, SAFETY * tolerance)
-        into.keep((at[0][pending], at[1][pending]), found, found.error <= SAFETY * tolerance)
-        pending = pending[~into.converged[at][pending]]
-
-
 FEWEST, RESOLVE_MOST = 16, 4096
 """Samples per half period of a straight gait; per whole period twice as many."""
 
@@ -106,6 +58,7 @@ def resolved(
     period = np.where(asked, T, 1.0)
     regular = (least_S1(robot, alpha, phi0) > 0) & asked.any(axis=1)
     needed = _samples(robot, np.abs(alpha) + np.abs(phi0))
+    accepted = tolerance * (_MARGIN if model.viscous else SAFETY)
     compiled = model.compiled(T.size)
     for straight in (True, False):
         halves = 1 if straight else 2
@@ -116,12 +69,11 @@ def resolved(
             at = pending[row], column
             robots = np.zeros(len(row), np.int64) if which is None else which[at[0]]
             points = Points(alpha[at[0]], phi0[at[0]], period[at], robots)
+            fewest = needed[at[0]] * halves if model.viscous else None
+            _by_code(compiled, points, p, straight, n, fewest, accepted, at, into)
             if not model.viscous:
-                by_newton(compiled, points, p, straight, n, tolerance, at, into)
                 continue
-            worst, fewest = _MARGIN * tolerance, needed[at[0]] * halves
-            n = by_series(compiled, points, p, straight, n, fewest, worst, at, into)
-            pending = pending[(asked & ~into.converged)[pending].any(axis=1)]
+            n, pending = 2 * compiled.most, pending[(asked & ~into.converged)[pending].any(axis=1)]
         doublings = Doublings(T.shape)
         most = halves * (RESOLVE_MOST if model.viscous else MOST)
         while len(pending) and n <= most:
@@ -131,14 +83,45 @@ def resolved(
                 robots = p if which is None else p[:, which[block]]
                 shapes = alpha[block], phi0[block], period[block]
                 found = model.cycles(*shapes, robots, n, straight, tolerance)
-                if model.viscous:
-                    good = found.error <= _MARGIN * tolerance
-                else:
-                    good = doublings.error(block, found) <= SAFETY * tolerance
-                into.keep(block, found, good & asked[block])
+                error = found.error if model.viscous else doublings.error(block, found)
+                into.keep(block, found, (error <= accepted) & asked[block])
             poor = (asked & ~into.converged)[pending].any(axis=1)
             pending, n = pending[poor], 2 * n
     return into
+
+
+def _by_code(
+    compiled: CompiledCycles,
+    points: Points,
+    p: Array,
+    straight: bool,
+    first: int,
+    fewest: Array | None,
+    accepted: float,
+    at: _Places,
+    into: Speeds,
+) -> None:
+    """Write to the places `at` the points whose error is accepted, from `first` samples on.
+
+    fewest: samples needed to resolve a point (K,) with viscous friction; None for other friction,
+    where a point takes as many as it needs up to a limit.
+    """
+    pending, viscous = np.arange(len(points.period)), fewest is not None
+    # With other friction, points that need many samples are grouped, by growing limits, as all
+    # points of a vector register take as many as the worst.
+    factor, most = (2, compiled.most) if viscous else (4, MOST * (1 if straight else 2))
+    n = first if viscous else factor * first
+    while len(pending) and n <= most:
+        now = pending if fewest is None else pending[fewest[pending] <= n]
+        if len(now):
+            some = points.only(now)
+            if viscous:
+                found = compiled.viscous(some, p, n, straight)
+            else:
+                found = compiled.newton(some, p, first, n, straight, accepted)
+            into.keep((at[0][now], at[1][now]), found, found.error <= accepted)
+            pending = pending[~into.converged[at][pending]]
+        n *= factor
 
 
 def least_S1(robot: Robot, amplitude: ArrayLike, offset: ArrayLike) -> Array:
@@ -190,35 +173,27 @@ def speeds(
 ) -> Speeds:
     """Speed and peak torque of gaits, feasible or not, in their broadcast shape.
 
-    amplitude, offset in rad, period in s, ratio J20/J10 (None: the robot as it is). tolerance: of
-    the speed, relative. Fastest if the last axis is that of the period alone. NaN where the gait
-    reaches the singular posture, and where the cycle is not resolved.
+    amplitude, offset in rad, period in s, ratio J20/J10 (None or NaN: the robot as it is).
+    tolerance: of the speed, relative. Fastest if the last axis is that of the period alone. NaN
+    where the gait reaches the singular posture, and where the cycle is not resolved.
     """
     ratios = np.asarray(np.nan if ratio is None else ratio, float)
     inputs = [np.asarray(part, float) for part in (amplitude, offset, ratios)]
-    common = np.broadcast_shapes(*(part.shape for part in inputs))
-    shape = np.broadcast_shapes(common, np.shape(period))
-    common = (1,) * (len(shape) - len(common)) + common
-    periods = shape[-1] if shape and common[-1] == 1 else 1
-    rows = shape[:-1] if periods > 1 else shape
-    alpha, phi0, J = (
-        np.broadcast_to(part.reshape((1,) * (len(shape) - part.ndim) + part.shape), common)
-        for part in inputs
-    )
-    if periods > 1:
-        alpha, phi0, J = (part[..., 0] for part in (alpha, phi0, J))
-    alpha, phi0, J = (np.broadcast_to(part, rows).ravel() for part in (alpha, phi0, J))
+    shape = np.broadcast_shapes(*(part.shape for part in inputs), np.shape(period))
+    alone = shape != () and all(part.shape[-1:] in ((), (1,)) for part in inputs)
+    rows, periods = ((*shape[:-1], 1), shape[-1]) if alone else (shape, 1)
+    alpha, phi0, J = (np.broadcast_to(part, rows).ravel() for part in inputs)
     T = np.broadcast_to(np.asarray(period, float), shape).reshape(len(alpha), periods)
-    which, p = _parameters(problem, None if ratio is None else J)
+    which, p = _parameters(problem, J)
     found = resolved(model_of(problem.robot), problem.robot, alpha, phi0, T, which, p, tolerance)
     speed, turn, torque = (part.reshape(shape) for part in found[:3])
     return Speeds(speed, turn, torque, found.converged.reshape(shape))
 
 
-def _parameters(problem: Problem, ratio: Array | None) -> tuple[NDArray[np.int_] | None, Array]:
-    """The robots' parameter vectors as columns, and the column of each ratio."""
+def _parameters(problem: Problem, ratio: Array) -> tuple[NDArray[np.int_] | None, Array]:
+    """The robots' parameter vectors as columns, and the column of each ratio (NaN: as it is)."""
     dynamics = dynamics_of(problem.robot)
-    if ratio is None:
+    if np.isnan(ratio).all():
         return None, dynamics.values(problem.robot)[:, None]
     values, which = np.unique(ratio, return_inverse=True)
     columns = [dynamics.values(robot_with(problem, value)) for value in values.tolist()]
@@ -233,7 +208,7 @@ def motions(problem: Problem, gaits: Array, phases: int = PHASES, *, grip: bool 
     """Steady motions of sines, (4, K): amplitude, period, offset, ratio (NaN: as it is), and with
     `grip` the grip needed. Columns are NaN where none is found."""
     amplitude, period, offset, ratio = gaits
-    which, p = _parameters(problem, None if np.isnan(ratio).all() else ratio)
+    which, p = _parameters(problem, ratio)
     theta = np.arange(phases)[:, None] * (2 * math.pi / phases)
     model, parts = model_of(problem.robot), []
     for at in range(0, max(len(amplitude), 1), _BLOCK):
@@ -259,7 +234,7 @@ def costs(problem: Problem, gaits: Array, found: Motion) -> Costs:
     n = len(found.torque)
     theta = np.arange(n)[:, None] * (2 * math.pi / n)
     power = positive_mean(found.torque * (amplitude * np.cos(theta) * 2 * math.pi / period))
-    which, p = _parameters(problem, None if np.isnan(ratio).all() else ratio)
+    which, p = _parameters(problem, ratio)
     names = dynamics_of(problem.robot).parameters
     mass = p[names.index("m1")] + p[names.index("m2")]
     weight = G * (mass if which is None else mass[which])

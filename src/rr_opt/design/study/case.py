@@ -184,10 +184,10 @@ def solve_study(
     left = {case: donors for case, donors in planned.donors.items() if case not in rows}
     yield from found(
         {
-            case: replace(
-                Task(portable(problems[case])),
-                footholds=tuple(footholds(donors, rows)),
-                expected=expected_speed(problems[case], donors, rows, problems),
+            case: Task(
+                portable(problems[case]),
+                tuple(footholds(donors, rows)),
+                expected_speed(problems[case], donors, rows, problems),
             )
             for case, donors in left.items()
         }
@@ -279,21 +279,18 @@ def _matters(best: StartResult, price: float, size: float) -> bool:
 def _bounds(
     problem: Problem, best: StartResult, ratio: float
 ) -> Iterator[tuple[str, str, float | None]]:
-    gait = problem.gait
-    ranges = {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}
-    for name, box in ranges.items():
-        price = best.bound_prices.get(name)
-        side = _side(problem, best, getattr(best.gait, name), box, price)
-        if side:
-            yield name, side, price
+    places = [
+        (name, getattr(best.gait, name), getattr(problem.gait, name), best.bound_prices.get(name))
+        for name in ("amplitude", "period", "offset")
+    ]
     choice = problem.inertia_ratio
-    if choice is None or choice.bounds.fixed:
-        return
-    whole = choice.by == "loads" and choice.loads.whole
-    price = None if whole else best.bound_prices["ballast"] * share_per_ratio(problem.robot, choice)
-    side = _side(problem, best, ratio, choice.bounds, price)
-    if side:
-        yield "inertia_ratio", side, price
+    if choice and not choice.bounds.fixed:
+        price = best.bound_prices["ballast"] * share_per_ratio(problem.robot, choice)
+        whole = choice.by == "loads" and choice.loads.whole
+        places.append(("inertia_ratio", ratio, choice.bounds, None if whole else price))
+    for name, value, box, price in places:
+        if side := _side(problem, best, value, box, price):
+            yield name, side, price
 
 
 def _side(

@@ -2,8 +2,9 @@
 
 import sys
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import Any, Literal, get_args
+from dataclasses import asdict, dataclass, fields, is_dataclass
+from types import UnionType
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 from rr_opt.outcome import Status
@@ -90,14 +91,7 @@ def gait_from(record: Mapping[str, Any]) -> Gait:
     if kind is None:
         shape = _shown(record["shape"])
         raise ValueError(f"its gait has the shape {shape}, not one of {list(_GAITS)}")
-    values = {
-        one.name: tuple(value) if isinstance(value := record[one.name], list) else value
-        for one in fields(kind)
-    }
-    for name, value in values.items():
-        for number in value if isinstance(value, tuple) else (value,):
-            _check_number(name, number)
-    return kind(**values)
+    return _read(kind, "gait", {one.name: record[one.name] for one in fields(kind)})
 
 
 def row_record(row: Row) -> dict[str, Any]:
@@ -107,73 +101,60 @@ def row_record(row: Row) -> dict[str, Any]:
 
 def row_from(record: Mapping[str, Any]) -> Row:
     """The row of a record. Raises KeyError, TypeError or ValueError if it is not one."""
-    values = dict(record)
-    statuses = [status.value for status in Status]
-    if values["status"] not in statuses:
-        raise ValueError(f"`status` is {_shown(values['status'])}, not one of {statuses}")
-    values["status"] = Status(values["status"])
-    if values["started"] not in get_args(Started):
-        started = _shown(values["started"])
-        raise ValueError(f"`started` is {started}, not one of {get_args(Started)}")
-    _check_fields(Row, values)
-    for name in ("tried", "continued"):
-        values[name] = _numbers(name, values[name], whole=True)
-    if values["expected"] is not None:
-        values["expected"] = _numbers("expected", values["expected"], count=2)
-    if (values["optimum"] is None) == (values["status"] is Status.OPTIMAL):
-        raise ValueError(f"`status` is {values['status'].value!r}, which does not fit `optimum`")
-    if values["optimum"] is not None:
-        values["optimum"] = _optimum_from(values["optimum"])
-    return Row(**values)
-
-
-def _optimum_from(record: Mapping[str, Any]) -> CaseOptimum:
-    values = dict(record)
-    _check_fields(CaseOptimum, values)
-    held = values["held"]
-    if not isinstance(held, (list, tuple)) or not all(isinstance(name, str) for name in held):
-        raise ValueError(f"`held` is {_shown(held)}, not a list of names")
-    for name in ("prices", "bound_prices"):
-        if not isinstance(values[name], dict):
-            raise ValueError(f"`{name}` is {_shown(values[name])}, not an object")
-        for key, price in values[name].items():
-            _check_number(f"{name}.{key}", price)
-    gait_from(values["gait"])
-    return CaseOptimum(**{**values, "held": tuple(held)})
+    row: Row = _read(Row, "row", record)
+    if (row.optimum is None) == (row.status is Status.OPTIMAL):
+        raise ValueError(f"`status` is {row.status.value!r}, which does not fit `optimum`")
+    if row.optimum:
+        gait_from(row.optimum.gait)
+    return row
 
 
 _PLAIN: dict[Any, str] = {str: "a text", bool: "true or false"}
 
 
-def _check_fields(kind: type, values: Mapping[str, Any]) -> None:
-    """Raise KeyError for a missing field, ValueError for a wrong number, text or boolean."""
-    for one in fields(kind):
-        value = values[one.name]
-        if one.type in (float, int) or (one.type == float | None and value is not None):
-            _check_number(one.name, value, whole=one.type is int)
-        elif one.type in (str, bool) and type(value) is not one.type:
-            raise ValueError(f"`{one.name}` is {_shown(value)}, not {_PLAIN[one.type]}")
+def _read(kind: Any, name: str, value: Any) -> Any:
+    """A value of this type, from what JSON makes of it. Raises KeyError for a missing field of a
+    dataclass, TypeError for an unknown one, ValueError for a wrong value."""
+    origin, args = get_origin(kind), get_args(kind)
+    if origin is UnionType:
+        return None if value is None else _read(args[0], name, value)
+    if isinstance(kind, type) and is_dataclass(kind):
+        values, kinds = dict(value), get_type_hints(kind)
+        for one in fields(kind):
+            values[one.name] = _read(kinds[one.name], one.name, values[one.name])
+        return kind(**values)
+    if origin is tuple:
+        count = None if args[-1] is ... else len(args)
+        listed = isinstance(value, (list, tuple)) and len(value) == (count or len(value))
+        if args[0] is str:
+            _expect(
+                listed and all(isinstance(one, str) for one in value),
+                name,
+                value,
+                "a list of names",
+            )
+        _expect(listed, name, value, f"a list of {f'{count} ' if count else ''}numbers")
+        return tuple(_read(args[0], name, one) for one in value)
+    if origin is Mapping:
+        _expect(isinstance(value, dict), name, value, "an object")
+        return {key: _read(args[1], f"{name}.{key}", one) for key, one in value.items()}
+    if kind is Status or origin is Literal:
+        choices = [status.value for status in Status] if kind is Status else args
+        _expect(value in choices, name, value, f"one of {choices}")
+        return Status(value) if kind is Status else value
+    if kind in _PLAIN:
+        _expect(type(value) is kind, name, value, _PLAIN[kind])
+    elif kind is not Any:
+        number = isinstance(value, (float, int)) and not isinstance(value, bool)
+        # An integer may be too large for a float.
+        _expect(number and abs(value) < LARGEST, name, value, "a finite number")
+        _expect(kind is float or isinstance(value, int), name, value, "a whole number")
+    return value
 
 
-def _numbers(
-    name: str, values: Any, *, whole: bool = False, count: int | None = None
-) -> tuple[Any, ...]:
-    if not isinstance(values, (list, tuple)) or (count is not None and len(values) != count):
-        raise ValueError(
-            f"`{name}` is {_shown(values)}, not a list of {f'{count} ' if count else ''}numbers"
-        )
-    for value in values:
-        _check_number(name, value, whole=whole)
-    return tuple(values)
-
-
-def _check_number(name: str, value: Any, *, whole: bool = False) -> None:
-    number = isinstance(value, (float, int)) and not isinstance(value, bool)
-    # An integer may be too large for a float.
-    if not number or not abs(value) < LARGEST:
-        raise ValueError(f"`{name}` is {_shown(value)}, not a finite number")
-    if whole and not isinstance(value, int):
-        raise ValueError(f"`{name}` is {_shown(value)}, not a whole number")
+def _expect(good: bool, name: str, value: Any, what: str) -> None:
+    if not good:
+        raise ValueError(f"`{name}` is {_shown(value)}, not {what}")
 
 
 def _shown(value: Any) -> str:
