@@ -1,16 +1,17 @@
 """Is any ratio of a benchmark much worse than the one that is committed?
 
-`python -m benchmarks.regression` holds results/bench/*.json as they are in the work tree against
-those of the last commit. A ratio is better the bigger it is. One that is worse by more than 30 %,
-or is gone, is shown in red, and the command then ends with 1.
+`python -m benchmarks.regression [REVISION]` compares results/bench/*.json in the working tree with
+those of a revision, the last commit unless one is given. A bigger ratio is better. One that is
+worse by more than 30 %, or is gone, is shown in red, and the command then ends with 1.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,16 +41,16 @@ class Change:
         return self.now is None or self.now < (1 - WORSE) * self.before
 
 
-def changes(root: Path = ROOT) -> list[Change]:
-    """All ratios of the work tree and of the last commit of the repository at `root`."""
+def changes(root: Path = ROOT, revision: str = "HEAD") -> list[Change]:
+    """All ratios of the working tree and of a revision of the repository at `root`."""
     now = {
         path.stem: _ratios(path.read_text(encoding="utf-8"))
         for path in sorted((root / FOLDER).glob("*.json"))
     }
-    listed = _git(root, "ls-tree", "--name-only", "HEAD", f"{FOLDER.as_posix()}/")
+    listed = _git(root, "ls-tree", "--name-only", revision, f"{FOLDER.as_posix()}/")
     names = [Path(name).stem for name in (listed or "").split() if name.endswith(".json")]
     before = {
-        name: _ratios(_git(root, "show", f"HEAD:{FOLDER.as_posix()}/{name}.json") or "{}")
+        name: _ratios(_git(root, "show", f"{revision}:{FOLDER.as_posix()}/{name}.json") or "{}")
         for name in names
     }
     return [
@@ -78,9 +79,11 @@ def table(found: list[Change]) -> Table:
     return out
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Show, and end with 1 if any is much worse."""
-    found = changes()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("revision", nargs="?", default="HEAD")
+    found = changes(ROOT, parser.parse_args(arguments).revision)
     console = Console()
     console.print(table(found))
     worse = [one for one in found if one.worse]

@@ -29,9 +29,10 @@ def repository(tmp_path):
         return path
 
     git("init", "-q")
-    write(BEFORE)
-    git("add", ".")
-    git("commit", "-q", "-m", "ratios")
+    for ratios in ({"fast": 1.0, "slow": 1.0}, BEFORE):
+        write(ratios)
+        git("add", ".")
+        git("commit", "-q", "-m", "ratios")
     return tmp_path, write
 
 
@@ -74,17 +75,23 @@ def test_a_file_that_is_gone_or_new(repository):
 def test_how_the_command_ends(repository, monkeypatch, capsys, slow, code):
     root, write = repository
     write({"fast": 10.0, "slow": slow})
-    monkeypatch.setattr(regression, "changes", lambda: changes(root))
+    monkeypatch.setattr(regression, "ROOT", root)
     if code:
         with pytest.raises(SystemExit) as end:
-            regression.main()
+            regression.main([])
         assert end.value.code == code
     else:
-        regression.main()
+        regression.main([])
     shown = capsys.readouterr().out
     assert "fast" in shown
     assert ("-50 %" in shown) == bool(code)
     assert ("1 of 2 ratios are worse" in shown) == bool(code)
+
+
+def test_an_earlier_revision(repository):
+    root, write = repository
+    write({"fast": 6.9, "slow": 0.5})
+    assert [one.label for one in changes(root, "HEAD~1") if one.worse] == ["slow"]
 
 
 def test_where_nothing_was_committed(tmp_path):
