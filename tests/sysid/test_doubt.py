@@ -15,13 +15,23 @@ def candidate(*effects: str, elpd: float = 0.0, better: bool = True) -> Any:
 
 
 def doubt(
-    best: Any, *others: Any, constant=0.9, single=1.0, alike=0.9, predicts=0.9, none=False
+    best: Any,
+    *others: Any,
+    constant=0.9,
+    single=1.0,
+    alike=0.9,
+    predicts=0.9,
+    none=False,
+    foreseen=True,
 ) -> str:
     made: Any = SimpleNamespace(
         best=best,
         _ended=[best, *others],
-        selection=SimpleNamespace(base=candidate(), complete=lambda _: none),
-        constancy=SimpleNamespace(probability=constant),
+        selection=SimpleNamespace(
+            base=candidate(), insignificant=lambda _: none, foreseen=foreseen
+        ),
+        _disagree=constant <= 0.5,
+        _hints=lambda: Identification._hints(made),
         sound=constant * single * alike * predicts,
         _constant=constant * single,
         _as_machines_differ=alike,
@@ -66,6 +76,17 @@ def test_nothing_is_said_where_nothing_predicts_better():
     assert doubt(candidate(), candidate("coulomb_friction", elpd=-1.0)) == ""
 
 
-def test_what_only_recordings_show_that_were_not_fitted_is_to_be_fitted():
-    said = doubt(candidate(better=False), none=True)
-    assert said == "The fitted recordings do not show the missing physics: fit those that do."
+DISAGREE = "The recordings disagree on the values of the nominal model."
+FIT = "Held-out recordings show the missing physics better than fitted ones: fit them."
+
+
+@pytest.mark.parametrize(
+    ("about", "hints"),
+    [
+        ({"constant": 0.1}, DISAGREE),
+        ({"foreseen": False}, FIT),
+        ({"constant": 0.1, "foreseen": False}, f"{DISAGREE} {FIT}"),
+    ],
+)
+def test_where_the_fitted_recordings_leave_nothing(about, hints):
+    assert doubt(candidate(better=False), none=True, **about) == hints

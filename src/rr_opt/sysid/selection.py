@@ -72,18 +72,22 @@ class Selection:
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
-        """Whether its misfit over whole runs is insignificant: within the tolerance (`none` with
-        effects, `negligible` without), the machine's form error and chance together. Without
-        effects, recordings must also agree on its values."""
-        chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
-        least = SETTINGS.none if candidate.choices else SETTINGS.negligible
-        most = least**2 + self.model.form_error**2 + chance
-        # Segments that need not join have a smaller misfit than whole runs.
-        if candidate.fit.excess**2 > 2 * most or candidate.excess**2 > most:
+        """Whether its misfit is insignificant and, without effects, recordings agree on its
+        values."""
+        if not self.insignificant(candidate):
             return False
         if candidate.choices:
             return True
         return constancy(candidate.fit, candidate.excess).probability > SETTINGS.named
+
+    def insignificant(self, candidate: Candidate) -> bool:
+        """Whether its misfit over whole runs is within the tolerance (`none` with effects,
+        `negligible` without), the machine's form error and chance together."""
+        chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
+        least = SETTINGS.none if candidate.choices else SETTINGS.negligible
+        most = least**2 + self.model.form_error**2 + chance
+        # Segments that need not join have a smaller misfit than whole runs.
+        return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether it predicts better than another one that is not good enough."""
@@ -92,10 +96,11 @@ class Selection:
     def _enough(self, candidate: Candidate) -> bool:
         """Whether it is complete. The nominal model must also predict held-out recordings, as these
         may show plainly what the fitted ones hardly do."""
-        return self.complete(candidate) and (bool(candidate.choices) or self._foreseen)
+        return self.complete(candidate) and (bool(candidate.choices) or self.foreseen)
 
     @cached_property
-    def _foreseen(self) -> bool:
+    def foreseen(self) -> bool:
+        """Whether the nominal model predicts the held-out recordings."""
         fit, model = self.base.fit, self.model
         held = [k for k, run in enumerate(model.runs) if run.held_out]
         if not held:
@@ -113,10 +118,10 @@ class Selection:
         )
 
     def _close(self, candidate: Candidate) -> bool:
-        """Whether its misfit is within the form error of its effects."""
+        """Whether it has effects, and its misfit is within their form error."""
         catalogue = self.model.catalogue
-        form_error = max((catalogue[name].form_error for name in candidate.effects), default=0.0)
-        return candidate.excess <= form_error * self.base.excess
+        form_errors = [catalogue[name].form_error for name in candidate.effects]
+        return bool(form_errors) and candidate.excess <= max(form_errors) * self.base.excess
 
     def fitted(
         self,

@@ -6,7 +6,7 @@ the answer `unexplained`.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -89,19 +89,21 @@ class Identification:
         return 1 / (1 + (share / self._form_error / SETTINGS.form_errors) ** 4)
 
     @property
+    def _disagree(self) -> bool:
+        return self.constancy.probability <= SETTINGS.named
+
+    @property
     def doubt(self) -> str:
-        """What predicts best and why it is not named, or which recordings show it; "" if nothing
-        was found that predicts better than the nominal model."""
-        if not self.best.choices and self.selection.complete(self.best):
-            return "The fitted recordings do not show the missing physics: fit those that do."
+        """What predicts best and why it is not named, or what else is known of what is missing."""
+        if not self.best.choices and self.selection.insignificant(self.best):
+            return " ".join(self._hints())
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
         if not best.effects:
             return ""
-        constant = self.constancy.probability
         disagree = "the recordings disagree on the values"
         so_many = "that many effects can mimic almost anything"
         reasons = {
-            disagree if constant <= SETTINGS.named else so_many: self._constant,
+            disagree if self._disagree else so_many: self._constant,
             "the remaining misfit exceeds the usual error of such models": self._as_machines_differ,
             "the held-out recordings do not confirm it": self._predicts,
         }
@@ -114,6 +116,13 @@ class Identification:
             against = ["most of the misfit remains"]
         names = listed(words_of(name) for name in best.effects)
         return f"The best candidate is {names}, but {listed(against) or 'others do about as well'}."
+
+    def _hints(self) -> Iterator[str]:
+        """What is known of what is missing if the fitted recordings leave no misfit to explain."""
+        if self._disagree:
+            yield "The recordings disagree on the values of the nominal model."
+        if not self.selection.foreseen:
+            yield "Held-out recordings show the missing physics better than fitted ones: fit them."
 
     @property
     def _predicts(self) -> float:
@@ -163,7 +172,7 @@ class Identification:
         """Whether recordings agree on the answer's values and its misfit, also when fitted to all
         recordings, is insignificant; or no more than slightly larger noise than stated, without
         any significant dependence."""
-        if self.constancy.probability <= SETTINGS.named:
+        if self._disagree:
             return False
         both = (self.best, self.everywhere)
         if all(self.selection.complete(one) for one in both):
