@@ -84,6 +84,7 @@ FIT = "Held-out recordings show the missing physics better than fitted ones: fit
     ("about", "hints"),
     [
         ({"constant": 0.1}, DISAGREE),
+        ({}, FIT),
         ({"foreseen": False}, FIT),
         ({"constant": 0.1, "foreseen": False}, f"{DISAGREE} {FIT}"),
     ],

@@ -95,6 +95,20 @@ def test_other_friction_as_cvodes(effects, seed):
 
 
 @needs_compiler
+@pytest.mark.parametrize("offset", [-0.25, 0.25])
+def test_a_turn_with_dry_friction_may_take_many_samples(offset):
+    one = Platform(0.469, 0.00386, 0.236, 0.05, 0.05, 2e-5)
+    two = Platform(0.25, 0.3 * 0.00386, 0.0941, 0.05, 0.05, 2e-5)
+    dry = (EffectUse("coulomb_friction", {"force1": 0.01, "force2": 0.01}),)
+    robot = with_inertia_ratio(Robot(one, two, h=0.02, physics=dry), 0.8 / 3)
+    gaits = np.array([3.25 / 3]), np.array([offset]), np.array([[0.3]])
+    fast = found(compiled(robot), robot, gaits, tolerance=2e-7)
+    assert fast.converged.all()
+    true = reference(robot, (3.25 / 3, 0.3, offset))
+    assert fast.speed[0, 0] == pytest.approx(true.speed, rel=1e-6)
+
+
+@needs_compiler
 def test_every_point_has_its_own_place():
     # More than one piece of work, and no whole number of vectors.
     draw, count = np.random.default_rng(3), 4999

@@ -121,7 +121,7 @@ class Identification:
         """What is known of what is missing if the fitted recordings leave no misfit to explain."""
         if self._disagree:
             yield "The recordings disagree on the values of the nominal model."
-        if not self.selection.foreseen:
+        if not (self._disagree and self.selection.foreseen):
             yield "Held-out recordings show the missing physics better than fitted ones: fit them."
 
     @property

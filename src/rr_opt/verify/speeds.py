@@ -109,7 +109,7 @@ def _by_code(
     pending, viscous = np.arange(len(points.period)), fewest is not None
     # With other friction, points that need many samples are grouped, by growing limits, as all
     # points of a vector register take as many as the worst.
-    factor, most = (2, compiled.most) if viscous else (4, 4 * MOST * (1 if straight else 2) - 1)
+    factor, most = (2, compiled.most) if viscous else (4, MOST * (1 if straight else 4))
     n = first if viscous else factor * first
     while len(pending) and n <= most:
         now = pending if fewest is None else pending[fewest[pending] <= n]

@@ -221,8 +221,8 @@ def _separations(planned: RacerModel, rival: Fit) -> Array:
 def _narrowed(
     planned: RacerModel, best: Fit, begun: Mapping[Segment, Array]
 ) -> tuple[int, str, float, float] | None:
-    """The plan that most narrows the least certain value of those that one narrows; that value's
-    name, the factor, and the size of its effect in the recording, RMS in sigma."""
+    """The plan that most narrows a value: the least certain one that any plan narrows. Its run, the
+    value's name, the factor, and the size of its effect in the recording, RMS in sigma."""
     if not best.u.size:
         return None
     _, plans = _linearised(planned, best, begun)
