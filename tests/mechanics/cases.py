@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rr_opt.effects import CATALOGUE
 from rr_opt.model.robot import EffectUse, Platform, Robot
-from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.motion.dynamics import Dynamics, dynamics_of
 
 REPEATABLE = settings(derandomize=True, deadline=None, max_examples=30)
 FIRST_FOUND = settings(REPEATABLE, phases=[Phase.generate])
@@ -82,21 +82,21 @@ def cases(draw: st.DrawFn, effects: tuple[str, ...] = ()) -> tuple[Robot, State]
     return robot, state
 
 
-def motion(robot: Robot, state: State) -> Motion:
-    model = dynamics_of(robot)
+def motion(robot: Robot, state: State, model: Dynamics | None = None) -> Motion:
+    model = model or dynamics_of(robot)
     return Motion(*(float(out) for out in model.motion(*state, model.values(robot))))
 
 
-def sides(robot: Robot, state: State) -> tuple[float, float]:
+def sides(robot: Robot, state: State, model: Dynamics | None = None) -> tuple[float, float]:
     """Side forces on the axles, N."""
-    model = dynamics_of(robot)
+    model = model or dynamics_of(robot)
     F1, F2 = model.sides(*state, model.values(robot))
     return float(F1), float(F2)
 
 
-def energy(robot: Robot, state: State) -> tuple[float, float]:
+def energy(robot: Robot, state: State, model: Dynamics | None = None) -> tuple[float, float]:
     """Kinetic energy (J) and dissipation (W)."""
-    model = dynamics_of(robot)
+    model = model or dynamics_of(robot)
     kinetic, dissipation = model.energy(*state[:3], model.values(robot))
     return float(kinetic), float(dissipation)
 

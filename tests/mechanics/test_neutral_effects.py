@@ -11,7 +11,7 @@ from rr_opt.effects.effect import Effect, Parameter
 from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
-from rr_opt.motion.dynamics import steady_effects
+from rr_opt.motion.dynamics import derive, dynamics_of, steady_effects
 from rr_opt.motion.floor_motion import free_joint
 from tests.mechanics.cases import REPEATABLE, State, cases, energy, motion, robots, sides
 from tests.mechanics.floor import MECHANICAL, on_floor, what_is_seen
@@ -45,10 +45,27 @@ def test_neutral_effect_changes_no_steady_cycle(name):
         robot, state = case
         with_it = replace(robot, physics=(use,))
         for quantity in (motion, sides, energy):
-            there = quantity(with_it, state)
+            there = quantity(with_it, state, derive((name,)))
             assert there == pytest.approx(quantity(robot, state), rel=1e-10, abs=1e-12)
 
     same()
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter"), [(name, q) for name in STEADY for q in CATALOGUE[name].parameters]
+)
+def test_what_a_robot_gives_is_worked_out_alike(name, parameter):
+    robot = replace(BENCHMARK, physics=(EffectUse(name, usual(CATALOGUE[name], parameter)),))
+    state = State(0.3, 0.4, -2.0, 9.0)
+    for quantity in (motion, sides, energy):
+        whole = quantity(robot, state, derive((name,)))
+        assert quantity(robot, state) == pytest.approx(whole, rel=1e-12)
+
+
+def test_drag_at_the_wheels_does_not_pay_for_that_of_the_bodies():
+    robot = replace(BENCHMARK, physics=(EffectUse("quadratic_drag", {"coefficient_total": 0.3}),))
+    whole = derive(("quadratic_drag",)).motion.n_instructions()
+    assert dynamics_of(robot).motion.n_instructions() < 0.9 * whole
 
 
 @pytest.mark.parametrize("name", HOLDING)

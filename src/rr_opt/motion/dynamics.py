@@ -55,8 +55,14 @@ class Assembly:
     p: ca.SX
 
 
-def assembled(effects: tuple[str, ...], *, for_prediction: bool = False) -> Assembly:
-    """The paper's robot with those of the named effects that change it or how it is observed."""
+def assembled(
+    effects: tuple[str, ...], *, neutral: frozenset[str] = frozenset(), for_prediction: bool = False
+) -> Assembly:
+    """The paper's robot with those of the named effects that change it or how it is observed.
+
+    neutral: `effect.parameter` of those that count as neutral whatever p says, so that what they
+    scale is not worked out.
+    """
     robot = replace(mechanism(), for_prediction=for_prediction)
     observation = Observation(robot.pose[0], robot.pose[1], robot.pose[2], robot.phi)
     symbols = {name: robot.parameters[name] for name in ROBOT_PARAMETERS}
@@ -64,14 +70,18 @@ def assembled(effects: tuple[str, ...], *, for_prediction: bool = False) -> Asse
         effects, key=lambda name: (_ORDER.index(CATALOGUE[name].port), _LISTED.index(name))
     ):
         effect = CATALOGUE[name]
-        values = {q.name: ca.SX.sym(f"{name}.{q.name}") for q in effect.parameters}
+        own = {f"{name}.{q.name}": ca.SX.sym(f"{name}.{q.name}") for q in effect.parameters}
+        values = {
+            q.name: ca.SX(q.neutral) if key in neutral else own[key]
+            for q, key in zip(effect.parameters, own, strict=True)
+        }
         if effect.enter:
             robot = effect.enter(robot, values)
         elif effect.observe:
             observation = effect.observe(observation, values)
         else:
             continue
-        symbols |= {f"{name}.{parameter}": value for parameter, value in values.items()}
+        symbols |= own
     return Assembly(effects, robot, observation, tuple(symbols), ca.vertcat(*symbols.values()))
 
 
@@ -141,8 +151,19 @@ class Dynamics:
 
 
 def dynamics_of(robot: Robot) -> Dynamics:
-    """The model with the effects that the robot lists."""
-    return derive(tuple(use.name for use in robot.physics))
+    """The model with the effects that the robot lists, for robots that share its neutral values."""
+    return derive(*model_key(robot))
+
+
+def model_key(robot: Robot) -> tuple[tuple[str, ...], frozenset[str]]:
+    """The effects that a robot lists, and which of their parameters are neutral."""
+    neutral = (
+        f"{use.name}.{q.name}"
+        for use in robot.physics
+        for q in CATALOGUE[use.name].parameters
+        if use.values.get(q.name, q.neutral) == q.neutral
+    )
+    return tuple(use.name for use in robot.physics), frozenset(neutral)
 
 
 def require_friction(robot: Robot) -> None:
@@ -155,14 +176,15 @@ def require_friction(robot: Robot) -> None:
         )
 
 
-def derive(effects: tuple[str, ...] = ()) -> Dynamics:
-    """Derive the model with those of the named effects that have a steady cycle."""
-    return _derived(tuple(name for name in effects if name in steady_effects()))
+def derive(effects: tuple[str, ...] = (), neutral: frozenset[str] = frozenset()) -> Dynamics:
+    """Derive the model with those of the named effects that have a steady cycle; `neutral` as for
+    `assembled`."""
+    return _derived(tuple(name for name in effects if name in steady_effects()), neutral)
 
 
 @lru_cache
-def _derived(effects: tuple[str, ...]) -> Dynamics:
-    assembly = assembled(effects)
+def _derived(effects: tuple[str, ...], neutral: frozenset[str]) -> Dynamics:
+    assembly = assembled(effects, neutral=neutral)
     robot, p = assembly.mechanism, assembly.p
     phi, u = robot.phi, robot.speeds
     kane = equations(robot)

@@ -14,7 +14,7 @@ from rr_opt.model.ballast import with_inertia_ratio
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Problem, Spreads
 from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import derive, dynamics_of
+from rr_opt.motion.dynamics import derive, dynamics_of, model_key
 from rr_opt.verify.compiled_cycles import CompiledCycles, Points, Speeds
 from rr_opt.verify.fourier import positive_mean
 from rr_opt.verify.steady_fourier import Doublings, Motion, SteadyFourier
@@ -155,12 +155,12 @@ def robot_with(problem: Problem, ratio: float | None) -> Robot:
 
 def model_of(robot: Robot) -> SteadyFourier:
     """The steady-cycle model for robots with the effects of this one."""
-    return _model(tuple(use.name for use in robot.physics))
+    return _model(*model_key(robot))
 
 
 @lru_cache
-def _model(effects: tuple[str, ...]) -> SteadyFourier:
-    return SteadyFourier(derive(effects))
+def _model(effects: tuple[str, ...], neutral: frozenset[str]) -> SteadyFourier:
+    return SteadyFourier(derive(effects, neutral))
 
 
 def speeds(
