@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -218,23 +219,30 @@ def _steady(robot: Robot, gait: Gait, path: Array) -> SteadyCycle:
 
 BETWEEN = 16
 """Points per sample of a cycle among which a peak is looked for."""
+_THROUGH = 6
+"""Samples that a polynomial between them goes through."""
 
 
 def peak_torque(steady: SteadyCycle) -> float:
-    """Largest |torque|, N m, by a spline on each piece between jumps."""
+    """Largest |torque|, N m, between the samples too."""
     return _peak(steady.gait.pieces, steady.torque, steady.torque_before)
 
 
 def _peak(pieces: int, after: Array, before: Array) -> float:
     """Largest size of what has these values after and before the jumps between pieces."""
-    from scipy.interpolate import CubicSpline  # half a second, after the first lines are printed
+    inside = after[:-1].reshape(pieces, -1)
+    values = np.hstack([inside, before[inside.shape[1] :: inside.shape[1], None]])
+    width = min(_THROUGH, values.shape[1])
+    windows = np.lib.stride_tricks.sliding_window_view(values, width, axis=1)
+    return float(np.abs(windows @ _between(width)).max())
 
-    each = (len(after) - 1) // pieces
-    inside = after[:-1].reshape(pieces, each)
-    ends = before[each::each, None]
-    at = np.arange(each + 1)
-    spline = CubicSpline(at, np.hstack([inside, ends]), axis=1)
-    return float(np.abs(spline(np.linspace(0, each, BETWEEN * each + 1))).max())
+
+@lru_cache
+def _between(width: int) -> Array:
+    """Weights (width, points) of samples in the polynomial through them, BETWEEN points a step."""
+    at = np.linspace(0, width - 1, BETWEEN * (width - 1) + 1)
+    powers = np.vander(np.arange(width), increasing=True).T
+    return np.linalg.solve(powers, np.vander(at, width, increasing=True).T)
 
 
 @dataclass(frozen=True)
