@@ -9,6 +9,7 @@ case to a process, taking its row back and syncing the journal cost.
 from __future__ import annotations
 
 import argparse
+import statistics
 import tempfile
 import time
 from collections.abc import Callable, Mapping
@@ -119,7 +120,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     asked = parser.parse_args()
     study = study_of(asked.cases)
-    lines, speeds, yard = [], {}, yardstick()
+    lines, speeds, yards = [], {}, [yardstick()]
     for name, workers, solve, cold in (
         ("idle, 1 process", 1, idle, True),
         ("cold, 1 process", 1, solve_case, True),
@@ -128,12 +129,13 @@ def main() -> None:
     ):
         taken, rows = measure(study, workers, solve, cold=cold)
         lines.append(line(name, taken, rows))
+        yards.append(yardstick())  # the machine's speed changes while they run
         speeds[name] = {case: row.optimum.speed for case, row in rows.items() if row.optimum}
         print(lines[-1], flush=True)
     cold, warm = speeds["cold, 1 process"], speeds["warm, 1 process"]
     apart = max(abs(warm[case] / speed - 1) for case, speed in cold.items())
     text = table(lines, apart)
-    write("study", text, compared(lines, yard))
+    write("study", text, compared(lines, statistics.median(yards)))
     print("\n".join(text))
 
 

@@ -8,7 +8,8 @@ import pytest
 
 from rr_opt.sysid import intervals
 from rr_opt.sysid.estimation import fitted, initial
-from rr_opt.sysid.intervals import estimates, released, wrong
+from rr_opt.sysid.intervals import estimates, instead_of, released, wrong
+from rr_opt.sysid.settings import SETTINGS
 from tests.sysid.linear_model import LinearModel
 
 FIRST = {"a": 0.0, "b": 0.0}
@@ -72,3 +73,36 @@ def test_a_value_is_not_wrong_because_another_was_released_first(monkeypatch, sc
 
     monkeypatch.setattr(intervals, "surprises", scripted)
     assert [q.name for q in wrong(released(fit))] == ["b"]
+
+
+class Mixed(LinearModel):
+    """b moves the states as a does, to a share."""
+
+    share = 0.0
+
+    def _maps(self, segment):
+        by_state, by_values = super()._maps(segment)
+        a, b = np.moveaxis(by_values, 2, 0)
+        return by_state, np.stack([a, self.share * a + (1 - self.share) * b], axis=2)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.9, 0.99, 1.0])
+def test_a_value_that_explains_as_much_is_told_beside_the_wrong_one(share):
+    """As refits say, in which the one is held and the other is not."""
+    model = Mixed(true={"a": 4.0, "b": 0.0}, prior=(np.inf, np.inf))
+    model.share = share
+    problem, states = initial(model, (), model.parameters, FIRST, range(3))
+    free = {
+        q.name: replace(q, scale=SETTINGS.effect_prior * q.scale, free=True)
+        for q in model.parameters
+    }
+    a, b = model.parameters
+    own = fitted(replace(problem, quantities=(free["a"], b)), FIRST, states)
+    other = fitted(replace(problem, quantities=(a, free["b"])), FIRST, states)
+    apart = other.deviance - own.deviance
+    assert abs(apart - 2 * SETTINGS.evidence) > 1.0
+    assert instead_of(own, "a") == (("b",) if apart < 2 * SETTINGS.evidence else ())
+
+
+def test_a_value_that_was_not_released_has_no_other():
+    assert instead_of(fit_of(0, {"a": 0.3, "b": 1.5}), "c") == ()

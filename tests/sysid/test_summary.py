@@ -82,6 +82,7 @@ def test_a_tie_is_called_one(found):
     tied = replace(found, indistinguishable=(("coulomb_friction", "lateral_slip"),))
     said = "These recordings cannot distinguish this from lateral slip."
     assert said in summary_of(tied)
+    assert said in summary_of(replace(tied, verdict="parameters"))
     assert said not in summary_of(replace(tied, indistinguishable=()))
     assert said not in summary_of(replace(tied, verdict="unexplained"))
 

@@ -68,7 +68,7 @@ def headline(
     if found.verdict == "consistent":
         return "The model explains the recordings"
     if found.verdict == "parameters":
-        values = f"the {listed(map(parameter, names))}" if names else "a value"
+        values = listed(f"the {parameter(name)}" for name in names) or "a value"
         return f"The model is right, but {values} differ{'s' * (len(names) < 2)} from nominal"
     if found.verdict == "missing_physics":
         return f"The model leaves out {listed(map(effect, names)) or 'something'}"

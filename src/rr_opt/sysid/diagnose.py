@@ -104,7 +104,7 @@ def _answer(result: Identification) -> Diagnosis:
             for q, one in zip(fit.problem.quantities, estimates(fit).values(), strict=True)
         },
         tried=tried(selection, best if verdict != "unexplained" else None),
-        indistinguishable=alike(result) if verdict == "missing_physics" else (),
+        indistinguishable=alike(result, verdict),
         next_experiment=None,
         residue=tuple(residues(result.after, model.inputs)) if verdict == "unexplained" else (),
         nominal=result.nominal.misfits,

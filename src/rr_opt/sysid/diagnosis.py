@@ -251,7 +251,7 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     rivals = " or ".join(map(words_of, others))
     tie = (
         f"These recordings cannot distinguish this from {rivals}."
-        if rivals and found.verdict == "missing_physics"
+        if rivals and found.verdict in ("missing_physics", "parameters")
         else ""
     )
     doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)

@@ -108,6 +108,29 @@ def released(fit: Fit) -> Fit:
     return fit
 
 
+def instead_of(fit: Fit, name: str) -> tuple[str, ...]:
+    """Values that, wrong instead of a released one, would explain the recordings about as well.
+
+    By the linearisation: the released value gets its prior back, and the other one's is widened as
+    much. The values of the prior's volume are the same, so that the losses compare.
+    """
+    nominal = {q.name: q for q in fit.problem.model.parameters}
+    if name not in nominal or nominal[name].free:
+        return ()
+    H, g, _ = fit.information()
+    names, wide = fit.problem.names, SETTINGS.effect_prior**2
+
+    def least(change: Mapping[str, float]) -> float:
+        """The least loss with these changes of the prior's precisions."""
+        D = np.array([change.get(one, 0.0) for one in names])
+        pull = g + D * fit.u
+        return float(D @ fit.u**2 - pull @ np.linalg.pinv(H + np.diag(D), hermitian=True) @ pull)
+
+    own, most = {name: wide - 1}, least({}) + 2 * SETTINGS.evidence
+    held = [q.name for q in fit.problem.quantities if q.name in nominal and not q.free]
+    return tuple(other for other in held if least({**own, other: 1 / wide - 1}) < most)
+
+
 def _sizes(fit: Fit) -> dict[str, float]:
     names = [q.name for q in fit.problem.quantities]
     return dict(zip(names, np.abs(surprises(fit)).tolist(), strict=True))

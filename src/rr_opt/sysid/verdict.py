@@ -19,7 +19,7 @@ from rr_opt.sysid.candidates import Candidate, weights
 from rr_opt.sysid.constancy import Constancy, constancy
 from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
-from rr_opt.sysid.intervals import estimates, named, wrong
+from rr_opt.sysid.intervals import estimates, instead_of, named, wrong
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.remainder import Dependence
 from rr_opt.sysid.selection import Selection
@@ -263,8 +263,15 @@ def _roughly(one: Candidate) -> float:
     return one.fit.excess
 
 
-def alike(result: Identification) -> tuple[tuple[str, ...], ...]:
-    """Sets of effects that predict the recordings about as well as the answer does."""
+def alike(result: Identification, verdict: Verdict) -> tuple[tuple[str, ...], ...]:
+    """Sets of effects that predict the recordings about as well as the answer does, or values that
+    explain them as well as a wrong one."""
+    if verdict == "parameters":
+        fit = result.best.fit
+        both = ((q.name, *instead_of(fit, q.name)) for q in wrong(fit))
+        return tuple(one for one in both if len(one) > 1)
+    if verdict != "missing_physics":
+        return ()
     own = result.best
     near = []
     for one in result.rivals:
