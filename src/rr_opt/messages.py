@@ -60,7 +60,7 @@ def one_of(words: Sequence[str]) -> str:
     return f"one of: {', '.join(words)}" if len(words) > 1 else f"`{words[0]}`"
 
 
-def listed(names: Iterable[str]) -> str:
+def listed(names: Iterable[str], word: str = "and") -> str:
     """`rate`, `rate and torque`, `angle, rate and torque`; empty for no name."""
     *others, last = [*names] or [""]
-    return " and ".join(filter(None, [", ".join(others), last]))
+    return f" {word} ".join(filter(None, [", ".join(others), last]))

@@ -263,7 +263,7 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
         text = f"{word}, {tables.stage_text(stage, found)}"
         yield doc.Fact(f"channel {tables.stage_name(stage)}", text)
     for group in found.indistinguishable:
-        yield doc.Fact("indistinguishable", " or ".join(map(words_of, group)))
+        yield doc.Fact("indistinguishable", listed(map(words_of, group), "or"))
     if found.verdict != "consistent":
         yield doc.Fact("remainder", tables.remainder_text(found.remainder))
     for each in found.residue:

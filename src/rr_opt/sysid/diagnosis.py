@@ -248,7 +248,7 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
         remains = f"The remainder is {remainder.size} ({share}){depends}."
     own = {one.name for one in found.findings}
     others = dict.fromkeys(n for some in found.indistinguishable for n in some if n not in own)
-    rivals = " or ".join(map(words_of, others))
+    rivals = listed(map(words_of, others), "or")
     tie = (
         f"These recordings cannot distinguish this from {rivals}."
         if rivals and found.verdict in ("missing_physics", "parameters")

@@ -109,26 +109,28 @@ def released(fit: Fit) -> Fit:
 
 
 def instead_of(fit: Fit, name: str) -> tuple[str, ...]:
-    """Values that, wrong instead of a released one, would explain the recordings about as well.
+    """Values that, wrong instead of a released one, would explain the recordings about as well, the
+    likeliest first.
 
     By the linearisation: the released value gets its prior back, and the other one's is widened as
-    much. The values of the prior's volume are the same, so that the losses compare.
+    much, so that the volume of both is the same and the losses compare.
     """
     nominal = {q.name: q for q in fit.problem.model.parameters}
     if name not in nominal or nominal[name].free:
         return ()
     H, g, _ = fit.information()
-    names, wide = fit.problem.names, SETTINGS.effect_prior**2
+    wide = SETTINGS.effect_prior**2
 
     def least(change: Mapping[str, float]) -> float:
-        """The least loss with these changes of the prior's precisions."""
-        D = np.array([change.get(one, 0.0) for one in names])
+        """The change of the loss with these changes of the prior's precisions."""
+        D = np.array([change.get(one, 0.0) for one in fit.problem.names])
         pull = g + D * fit.u
         return float(D @ fit.u**2 - pull @ np.linalg.pinv(H + np.diag(D), hermitian=True) @ pull)
 
-    own, most = {name: wide - 1}, least({}) + 2 * SETTINGS.evidence
     held = [q.name for q in fit.problem.quantities if q.name in nominal and not q.free]
-    return tuple(other for other in held if least({**own, other: 1 / wide - 1}) < most)
+    losses = {other: least({name: wide - 1, other: 1 / wide - 1}) for other in held}
+    most = least({}) + 2 * SETTINGS.evidence
+    return tuple(sorted((one for one in held if losses[one] < most), key=losses.__getitem__))
 
 
 def _sizes(fit: Fit) -> dict[str, float]:
