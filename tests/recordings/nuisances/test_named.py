@@ -241,10 +241,30 @@ def test_a_mirrored_robot_is_half_a_period_off_its_command():
 def test_angles_in_degrees_and_lengths_in_millimetres():
     for change, said in (
         (scaled(psi=180 / np.pi), "is psi in degrees?"),
-        (scaled(x=1e3, y=1e3), "are these millimetres"),
+        (scaled(x=1e3, y=1e3), "(millimetres or centimetres?)"),
         (scaled(x=0.01, y=0.01), "x and y are 0.00"),
     ):
         assert said in told(recording(change=change))[1]
+
+
+def test_a_robot_that_drives_many_lengths_in_a_period_is_right():
+    gait, (c1, c2) = SineGait(0.3, 4.0, 0.0), (ROBOT.platform1.c, ROBOT.platform2.c)
+
+    def rolling(v):
+        """At 0.5 m/s of axle 1 along platform 1; both axles roll."""
+        t, phi = v["t"], gait.angle(v["t"])
+        w = -(0.5 * np.sin(phi) + c2 * gait.rate(t)) / (c1 * np.cos(phi) + c2)
+        psi = np.cumsum(w) * (t[1] - t[0])
+        place = np.cumsum((0.5 - 1j * c1 * w) * np.exp(1j * psi)) * (t[1] - t[0])
+        rng = np.random.default_rng(2)
+        for name, y in zip(("x", "y", "psi", "phi"), (place.real, place.imag, psi, phi),
+                           strict=True):  # fmt: skip
+            v[name] = y + NOISE.of(name) * rng.normal(size=len(t))
+
+    fast = recording(gait=gait, change=rolling)
+    one = int(gait.period / (fast.t[1] - fast.t[0]))
+    assert np.ptp(fast.values["x"][:one]) > 5 * (c1 + c2)
+    assert told(fast, gait=gait)[0] == set()
 
 
 def test_channels_that_are_never_there_together_contradict_nothing():

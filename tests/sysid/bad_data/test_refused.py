@@ -26,7 +26,7 @@ def refusal(folder):
     [
         ((1, 1000, 1, 1, 1), "millimetres"),
         ((1, 20, 20, 1, 1), "millimetres or centimetres?"),
-        ((1, 100, 100, 1, 1), "Expected metres"),
+        ((1, 100, 100, 1, 1), "millimetres or centimetres"),
         ((1, 15, 15, 1, 1), "millimetres or centimetres?"),
         ((1, 0.02, 0.02, 1, 1), "times too large"),
         ((1, 1, 1, DEGREES, 1), "is psi in degrees?"),

@@ -96,20 +96,15 @@ def unit_notices(recording: Recording) -> Iterator[Notice]:
         yield notice("units.angle" if largest > _NO_ANGLE else "units.degrees", largest=largest)
 
 
-_LENGTHS = 5.0
-"""No robot drives further in a period, in its own lengths."""
 _HEADING = 6.0
-"""Nor does its heading swing further, relative to phi: in degrees it is 57 times too far."""
+"""A heading swings no further, relative to phi: in degrees it is 57 times too far."""
 
 
 def look_at_units(given: ExaminedRecording) -> Iterator[Notice]:
-    """Lengths and angles in another unit, by the gait and the robot."""
-    if given.gait is None or given.robot is None:
+    """Angles in another unit, by the gait."""
+    if given.gait is None:
         return
-    x, y, psi, phi = (_swing(given.t, one, given.gait.period) for one in given.motion)
-    length = given.robot.platform1.c + given.robot.platform2.c
-    if max(x, y) > _LENGTHS * length:
-        yield notice("units.length", driven=max(x, y), length=length)
+    psi, phi = (_swing(given.t, one, given.gait.period) for one in given.motion[2:])
     if psi > _HEADING * phi > 0:
         yield notice("units.heading", psi=psi, phi=phi)
 
