@@ -154,7 +154,7 @@ def said(model: RollerRacer) -> dict[str, Any]:
     return {
         "verdict": verdict,
         "named": {one.name: one.confidence for one in named},
-        "groups": alike(result) if verdict == "missing_physics" else (),
+        "groups": alike(result, verdict),
         "cpu": round(time.process_time() - began, 2),
     }
 
