@@ -242,7 +242,7 @@ def _between(width: int) -> Array:
     """Weights (width, points) of samples in the polynomial through them, BETWEEN points a step."""
     at = np.linspace(0, width - 1, BETWEEN * (width - 1) + 1)
     powers = np.vander(np.arange(width), increasing=True).T
-    return np.linalg.solve(powers, np.vander(at, width, increasing=True).T)
+    return np.asarray(np.linalg.solve(powers, np.vander(at, width, increasing=True).T), float)
 
 
 @dataclass(frozen=True)
