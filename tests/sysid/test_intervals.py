@@ -86,23 +86,26 @@ class Mixed(LinearModel):
         return by_state, np.stack([a, self.share * a + (1 - self.share) * b], axis=2)
 
 
+def mixed(share):
+    """The problem of a model in which a is wrong, and initial states."""
+    model = Mixed(true={"a": 4.0, "b": 0.0}, prior=(np.inf, np.inf))
+    model.share = share
+    return initial(model, (), model.parameters, FIRST, range(3))
+
+
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.9, 0.99, 1.0])
 def test_a_value_that_explains_as_much_is_told_beside_the_wrong_one(share):
     """As refits say, in which the one is held and the other is not."""
-    model = Mixed(true={"a": 4.0, "b": 0.0}, prior=(np.inf, np.inf))
-    model.share = share
-    problem, states = initial(model, (), model.parameters, FIRST, range(3))
-    free = {
-        q.name: replace(q, scale=SETTINGS.effect_prior * q.scale, free=True)
-        for q in model.parameters
-    }
-    a, b = model.parameters
-    own = fitted(replace(problem, quantities=(free["a"], b)), FIRST, states)
-    other = fitted(replace(problem, quantities=(a, free["b"])), FIRST, states)
+    problem, states = mixed(share)
+    a, b = problem.quantities
+    free_a, free_b = (replace(q, scale=SETTINGS.effect_prior * q.scale, free=True) for q in (a, b))
+    own = fitted(replace(problem, quantities=(free_a, b)), FIRST, states)
+    other = fitted(replace(problem, quantities=(a, free_b)), FIRST, states)
     apart = other.deviance - own.deviance
     assert abs(apart - 2 * SETTINGS.evidence) > 1.0
     assert instead_of(own, "a") == (("b",) if apart < 2 * SETTINGS.evidence else ())
 
 
 def test_a_value_that_was_not_released_has_no_other():
-    assert instead_of(fit_of(0, {"a": 0.3, "b": 1.5}), "c") == ()
+    problem, states = mixed(1.0)
+    assert instead_of(fitted(problem, FIRST, states), "a") == ()

@@ -230,8 +230,8 @@ def peak_torque(steady: SteadyCycle) -> float:
 
 def _peak(pieces: int, after: Array, before: Array) -> float:
     """Largest size of what has these values after and before the jumps between pieces."""
-    inside = after[:-1].reshape(pieces, -1)
-    values = np.hstack([inside, before[inside.shape[1] :: inside.shape[1], None]])
+    each = (len(after) - 1) // pieces
+    values = np.hstack([after[:-1].reshape(pieces, each), before[each::each, None]])
     width = min(_THROUGH, values.shape[1])
     windows = np.lib.stride_tricks.sliding_window_view(values, width, axis=1)
     return float(np.abs(windows @ _between(width)).max())

@@ -110,13 +110,14 @@ def released(fit: Fit) -> Fit:
 
 def instead_of(fit: Fit, name: str) -> tuple[str, ...]:
     """Values that, wrong instead of a released one, would explain the recordings about as well, the
-    likeliest first.
+    likeliest first; none for a value that was not released.
 
     By the linearisation: the released value gets its prior back, and the other one's is widened as
     much, so that the volume of both is the same and the losses compare.
     """
-    nominal = {q.name: q for q in fit.problem.model.parameters}
-    if name not in nominal or nominal[name].free:
+    stated = {q.name for q in fit.problem.model.parameters if not q.free}
+    held = [q.name for q in fit.problem.quantities if q.name in stated and not q.free]
+    if name not in stated or name in held:
         return ()
     H, g, _ = fit.information()
     wide = SETTINGS.effect_prior**2
@@ -127,7 +128,6 @@ def instead_of(fit: Fit, name: str) -> tuple[str, ...]:
         pull = g + D * fit.u
         return float(D @ fit.u**2 - pull @ np.linalg.pinv(H + np.diag(D), hermitian=True) @ pull)
 
-    held = [q.name for q in fit.problem.quantities if q.name in nominal and not q.free]
     losses = {other: least({name: wide - 1, other: 1 / wide - 1}) for other in held}
     most = least({}) + 2 * SETTINGS.evidence
     return tuple(sorted((one for one in held if losses[one] < most), key=losses.__getitem__))
