@@ -37,7 +37,7 @@ def both(system, drives, starts, p):
         wanted = rng.normal(size=(p.size, 3)) * (np.arange(3) != 1)
         moved = DriveSlopes(
             rng.normal(size=(*drive.at.shape, 2)),
-            rng.normal(size=(*drive.nodes.shape, 2)),
+            rng.normal(size=(len(drive.nodes), drive.h.size, 2)),
             np.array([1, 2]),
         )
         values = one.seen + rng.normal(size=one.seen.shape)
@@ -72,6 +72,24 @@ def test_the_same_numbers(name, worth, monkeypatch, own_cache):
     for mine, other in zip(fast[0], plain[0], strict=True):
         np.testing.assert_allclose(mine.states, other.states, rtol=1e-12, atol=1e-14)
         np.testing.assert_allclose(mine.seen, other.seen, rtol=1e-12, atol=1e-14)
+    for fast_grams, plain_grams in zip(fast[1:], plain[1:], strict=True):
+        for (a, a_end), (b, b_end) in zip(fast_grams, plain_grams, strict=True):
+            size = np.sqrt(np.diag(b))
+            np.testing.assert_allclose(a, b, atol=1e-11 * np.outer(size, size).max())
+            np.testing.assert_allclose(a_end, b_end, atol=1e-11 * np.abs(b_end).max())
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", CASES)
+def test_few_runs_in_pieces(name, monkeypatch):
+    system, drive, start, p, _ = CASES[name]
+    p = values_of(BENCHMARK, floor_motion().parameters) if p is None else np.array(p)
+    drives, starts = [drive, shorter(drive, 34)], [np.array(start)] * 2
+    plain = both(system, drives, starts, p)
+    monkeypatch.setattr(shoot, "_FEW", 0)
+    monkeypatch.setattr(shoot, "_PAYS", 0)
+    monkeypatch.setattr(compiled, "_SHORTEST", 10)
+    fast = both(replace(system, lasts=True), drives, starts, p)
     for fast_grams, plain_grams in zip(fast[1:], plain[1:], strict=True):
         for (a, a_end), (b, b_end) in zip(fast_grams, plain_grams, strict=True):
             size = np.sqrt(np.diag(b))
@@ -119,6 +137,7 @@ def test_what_leaves_the_numbers_counts_for_nothing(monkeypatch):
         drive, replace(made, states=states, seen=lost), np.array(p), wanted, None, recorded
     )
     whole = Sought(drive, made, np.array(p), wanted, None, first)
+    monkeypatch.setattr(compiled, "_SHORTEST", 10)
     for few in (10**9, 0):
         monkeypatch.setattr(shoot, "_FEW", few)
         monkeypatch.setattr(shoot, "_PAYS", few)
@@ -133,7 +152,7 @@ def test_a_run_whose_drive_stays_beside_one_whose_drive_is_moved(monkeypatch):
     system, drive, start, p, _ = CASES["fine"]
     (made,) = predict_all(system, [(drive, np.array(start), np.array(p))])
     moved = DriveSlopes(
-        np.ones((*drive.at.shape, 1)), np.ones((*drive.nodes.shape, 1)), np.array([0])
+        np.ones((*drive.at.shape, 1)), np.ones((len(drive.nodes), drive.h.size, 1)), np.array([0])
     )
     recorded = Recorded.of(made.seen + 0.1, np.ones_like(made.seen))
     asked = [

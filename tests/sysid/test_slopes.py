@@ -1,7 +1,7 @@
 """The derivatives carried along a run are those of the prediction, by parameters and by the start.
 
 Held against differences of whole predictions: for smooth steps, for fine steps of a stiff system,
-and for the robot.
+and for the robot. With steps half as long they are four times as close.
 """
 
 import casadi as ca
@@ -55,10 +55,10 @@ def path(rows: int, each: int) -> DrivePath:
 
 
 CASES = {
-    "smooth": (pendulum(), path(2, 1), [0.4, -0.2], [9.0, 0.3], 1e-8),
+    "smooth": (pendulum(), path(2, 1), [0.4, -0.2], [9.0, 0.3], 2e-3),
     "fine": (pendulum(), path(2, 4), [0.4, -0.2], [9.0, 0.3], 1e-4),
     "stiff": (stiff(), path(3, 4), [0.4, 0.1], [0.5, 0.7], 2e-2),
-    "racer": (racer(), path(2, 1), [0.1, 0.2, 0.3, 0.05], None, 1e-7),
+    "racer": (racer(), path(2, 1), [0.1, 0.2, 0.3, 0.05], None, 2e-3),
 }
 
 
@@ -94,3 +94,20 @@ def test_against_differences(name):
     last = np.column_stack(ends)
     size = np.maximum(np.abs(last).max(axis=0), 0.1 * np.abs(last).max())
     assert np.all(np.abs(found.end - last) <= close * size + 1e-9)
+
+
+@pytest.mark.parametrize("name", ["smooth", "racer"])
+def test_second_order(name):
+    system, _, start, p, _ = CASES[name]
+    start = np.array(start)
+    p = values_of(BENCHMARK, floor_motion().parameters) if p is None else np.array(p)
+    errors = []
+    for each in (1, 2, 4):
+        drive = path(2, each)
+        made = predict(system, drive, start, p)
+        found = slopes(system, drive, made, p, np.eye(p.size), None).by_start[:, :, -1]
+        by = 1e-5 * np.eye(start.size)[-1]
+        up, down = (predict(system, drive, start + s * by, p).seen for s in (1, -1))
+        errors.append(np.abs(found - (up - down) / 2e-5).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders == pytest.approx(2.0, abs=0.1)

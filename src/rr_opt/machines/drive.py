@@ -77,16 +77,16 @@ class MeasuredDrives:
             return None
         here = self.path(piece, signals, values)
         at = np.empty((*here.at.shape, len(own)))
-        nodes = np.empty((*here.nodes.shape, len(own)))
+        middle = np.empty((len(here.nodes), here.h.size, len(own)))
         for k, (effect, constant) in enumerate(own):
             name = effect.quantity(constant.name)
             step, value = 0.05 * constant.size(self.scales), values.get(name, 0.0)
             ends = [min(max(value + s, constant.low), constant.high) for s in (step, -step)]
             up, down = (self.path(piece, signals, {**values, name: x}) for x in ends)
             at[..., k] = (up.at - down.at) / (ends[0] - ends[1])
-            nodes[..., k] = (up.nodes - down.nodes) / (ends[0] - ends[1])
+            middle[..., k] = (up.nodes[:, 1] - down.nodes[:, 1]) / (ends[0] - ends[1])
         columns = [wanted.index(effect.quantity(constant.name)) for effect, constant in own]
-        return DriveSlopes(at, nodes, np.array(columns))
+        return DriveSlopes(at, middle, np.array(columns))
 
     def _whole(
         self, recording: int, signals: Sequence[MachineEffect], constants: Sequence[float]
@@ -118,6 +118,6 @@ def beside(moved: DriveSlopes | None, more: DriveSlopes, wanted: int) -> DriveSl
         return replace(more, columns=wanted + more.columns)
     return DriveSlopes(
         np.concatenate([moved.at, more.at], axis=-1),
-        np.concatenate([moved.nodes, more.nodes], axis=-1),
+        np.concatenate([moved.middle, more.middle], axis=-1),
         np.concatenate([moved.columns, wanted + more.columns]),
     )

@@ -121,7 +121,7 @@ def unknown_inputs(
         row = len(machine.inputs) + list(machine.ports).index(channel)
         words, unit = machine.variables.get(name, (CONSTANT, ""))
         if name == CONSTANT:
-            at, values = np.zeros(1), [np.zeros((3, path.h.size)) for _, path, _ in made]
+            at, values = np.zeros(1), [np.zeros(path.h.size) for _, path, _ in made]
         else:
             values = [_along(known.index(name), path, way) for _, path, way in made]
             at = _knots(np.concatenate([one.ravel() for one in values]))
@@ -133,22 +133,21 @@ def unknown_inputs(
         column += at.size
 
     def moved(k: int, path: DrivePath) -> DriveSlopes:
-        nodes = np.zeros((path.nodes.shape[0], 3, path.h.size, column))
+        middle = np.zeros((len(path.nodes), path.h.size, column))
         for (row, at, values), term in zip(shapes, terms, strict=True):
-            nodes[row][:, :, list(term.columns)] = _hats(values[k], at)
-        at = np.zeros((path.nodes.shape[0], path.at.shape[1], column))
-        return DriveSlopes(at, nodes, np.arange(column))
+            middle[row][:, list(term.columns)] = _hats(values[k], at)
+        at = np.zeros((len(path.nodes), path.at.shape[1], column))
+        return DriveSlopes(at, middle, np.arange(column))
 
     return terms, (moved(k, path) for k, (_, path, _) in enumerate(made))
 
 
 def _along(k: int, path: DrivePath, made: Path) -> Array:
-    """A state or an input (3, steps) at the beginning, middle and end of each step."""
+    """A state or an input in the middle of each step (steps,)."""
     states = made.states
     if k >= len(states):
-        return path.nodes[k - len(states)]
-    y = states[k]
-    return np.array([y[:-1], (y[:-1] + y[1:]) / 2, y[1:]])
+        return path.nodes[k - len(states), 1]
+    return (states[k, :-1] + states[k, 1:]) / 2
 
 
 def _knots(values: Array) -> Array:

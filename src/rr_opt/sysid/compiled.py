@@ -10,7 +10,7 @@ from __future__ import annotations
 import ctypes
 import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import casadi as ca
@@ -26,11 +26,14 @@ _FLAGS = (
     *("-ffp-contract=fast", "-fPIC", "-shared"),
 )
 
-FINE = 4
-"""From this many steps between two samples, the midpoint slope is enough for derivatives."""
-
-_WORTH = 1000
+_WORTH = 100
 """Steps below which starting a thread takes longer than the work itself."""
+
+_SIDE_BY_SIDE = 16
+"""Few runs are linearised in pieces, up to so many in all: their states are known."""
+
+_SHORTEST = 100
+"""Fewest samples in a piece."""
 
 
 class _CompiledRun(ctypes.Structure):
@@ -54,8 +57,8 @@ class Rows:
 
     inputs, at, each, p, states  as `Compiled.predict` takes and gives them
     wanted  (np, nq) dp/dq
-    moved   d(drive)/dq at the samples (drive, samples, k) and at the nodes (drive, 3, steps, k), of
-            those q that move it, and which they are (k,)
+    moved   d(drive)/dq at the samples (drive, samples, k) and in the middle of the steps
+            (drive, steps, k), of those q that move it, and which they are (k,)
     data, weight  (samples, channels) what was recorded, and 1/sigma, 0 where nothing was
     more    (samples, channels, k) further columns
     """
@@ -70,6 +73,31 @@ class Rows:
     data: Array
     weight: Array
     more: Array | None = None
+
+    def pieces(self, count: int) -> list[Rows]:
+        """Cut into up to `count` pieces; a sample between two of them is the later one's."""
+        samples = self.at.shape[1] - 1
+        count = max(min(count, samples // _SHORTEST), 1)
+        edges = [samples * k // count for k in range(count + 1)]
+        return [self._piece(a, b, samples) for a, b in itertools.pairwise(edges)]
+
+    def _piece(self, first: int, last: int, samples: int) -> Rows:
+        steps, seen = slice(first * self.each, last * self.each), slice(first, last + 1)
+        weight = self.weight[seen]
+        if last < samples:
+            weight = weight.copy()
+            weight[-1] = 0.0
+        moved = self.moved and (self.moved[0][:, seen], self.moved[1][:, steps], self.moved[2])
+        return replace(
+            self,
+            inputs=self.inputs[steps],
+            at=self.at[:, seen],
+            states=self.states[:, steps.start : steps.stop + 1],
+            moved=moved,
+            data=self.data[seen],
+            weight=weight,
+            more=None if self.more is None else self.more[seen],
+        )
 
 
 class Compiled:
@@ -116,6 +144,11 @@ class Compiled:
 
         Raises ValueError if the runs differ in their number of q or further columns.
         """
+        cut = [run.pieces(_SIDE_BY_SIDE // len(runs)) for run in runs]
+        made = iter(self._grams([piece for pieces in cut for piece in pieces]))
+        return [_joined([next(made) for _ in pieces]) for pieces in cut]
+
+    def _grams(self, runs: Sequence[Rows]) -> list[tuple[Array, Array]]:
         first = runs[0]
         shapes = {(run.wanted.shape, run.more is None or run.more.shape[2]) for run in runs}
         if len(shapes) > 1:
@@ -130,16 +163,16 @@ class Compiled:
         out = [(np.empty((n, n)), np.empty((self._size, self._size + nq))) for _ in runs]
         held = []
         for run, (gram, end) in zip(runs, out, strict=True):
-            moved = {}
+            moved: dict[str, Array] = {}
             if moving.size:
                 at = np.zeros((len(run.data), drive, moving.size))
-                nodes = np.zeros((len(run.inputs), 3, drive, moving.size))
+                middle = np.zeros((len(run.inputs), drive, moving.size))
                 if run.moved:
                     own = np.searchsorted(moving, run.moved[2])
                     at[:, :, own] = run.moved[0].transpose(1, 0, 2)
-                    nodes[:, :, :, own] = run.moved[1].transpose(2, 1, 0, 3)
-                moved = {"moved_at": at, "moved": nodes}
-            if extras:
+                    middle[:, :, own] = run.moved[1].transpose(1, 0, 2)
+                moved = {"moved_at": at, "moved": middle}
+            if run.more is not None:
                 moved["more"] = run.more
             held.append(
                 _Held(
@@ -185,6 +218,19 @@ class Compiled:
                 work(few)
         else:
             in_threads(work, groups)
+
+
+def _joined(pieces: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """The sum of a run's pieces, by what the first starts from; and the run's end."""
+    total, carried = pieces[0]
+    size, width = carried.shape
+    for gram, end in pieces[1:]:
+        by = np.eye(len(gram))
+        # Where a prediction has left the numbers there is nothing to carry on.
+        by[:size, :width] = carried if gram[:size].any() else 0.0
+        total = total + by.T @ gram @ by
+        carried = end[:, :size] @ carried + np.pad(end[:, size:], ((0, 0), (size, 0)))
+    return total, carried
 
 
 def _moving(runs: Sequence[Rows]) -> Indices:
@@ -233,29 +279,88 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
     Raises NotImplementedError for an operation without a C equivalent.
     """
     state, drive, p = (rates.numel_in(i) for i in range(3))
-    head = {"NX": state, "ND": drive, "NP": p, "NY": seen.numel_out(0)}
-    parts = [in_stages(step, "step", (1, 1, 0), "ALONE")]
-    head |= {"K_STEP": parts[0].kept[0], "FINE": FINE}
-    tables = []
-    for name, letter, function in (("rates", "R", rates), ("seen", "S", seen)):
-        inputs = function.sx_in()
-        value = ca.densify(function(*inputs))
-        by = ca.jacobian(value, ca.vertcat(*inputs))
-        rows, columns = (np.array(index, int) for index in by.sparsity().get_triplet())
-        edges = np.searchsorted(columns, [state, state + drive])
-        sizes = np.diff([0, *edges, len(columns)])
-        head |= {f"{letter}{key}": int(n) for key, n in zip("XDP", sizes, strict=True)}
-        tables += [_table(f"{name.upper()}_ROW", rows), _table(f"{name.upper()}_COLUMN", columns)]
-        both = ca.Function(f"{name}_by", inputs, ca.cse([value, by]))
-        parts.append(in_stages(both, name, (1, 1, 0), "ALONE"))
+    outputs = seen.numel_out(0)
+    x, u, q = rates.sx_in()
+    h = ca.SX.sym("h")
+    P, Q = transition(ca.jacobian(ca.densify(rates(x, u, q)), x), h, stiff=stiff)
+    hop = [P, Q, *(ca.jacobian(ca.densify(rates(x, u, q)), by) for by in (u, q))]
+    value = ca.densify(seen(x, u, q))
+    by = [ca.jacobian(value, one) for one in (x, u, q)]
+    head = {"NX": state, "ND": drive, "NP": p, "NY": outputs, "SEEN": sum(one.nnz() for one in by)}
+    head |= {f"HOP_{key}": one.nnz() for key, one in zip("PQRS", hop, strict=True)}
+    head |= {f"SEEN_{key}": one.nnz() for key, one in zip("XRS", by, strict=True)}
+    head |= {"HOP": sum(one.nnz() for one in hop)}
+    made = {
+        "step": step,
+        "hop": ca.Function("hop", [ca.vertcat(x, u, h), q], _nonzeros(hop)),
+        "seen": ca.Function("seen", [ca.vertcat(x, u), q], _nonzeros([value, *by])),
+    }
+    parts = []
+    for name, function in made.items():
+        stages = [1] * (function.n_in() - 1) + [0]
+        parts.append(in_stages(function, name, stages, "ALONE"))
         head[f"K_{name.upper()}"] = parts[-1].kept[0]
+    by_state = [int(by[0][i, :].nnz() > 0) for i in range(outputs)]
+    tables = [
+        *_places("HOP", hop[2:]),
+        *_places("SEEN", by[1:]),
+        _table("BY_STATE", by_state),
+        *(_times(*one) for one in (("p", P), ("q", Q), ("seen", by[0]))),
+    ]
     defines = [f"#define {name} {number}\n" for name, number in head.items()]
     lanes = source_file("rr_opt.mechanics", "lanes.c")
     loops = source_file("rr_opt.sysid", "diagnose_lanes.c")
-    sources = [part.source for part in parts]
-    return "".join([*defines, "#define STIFF\n" * stiff, lanes, *sources, *tables, loops])
+    return "".join([*defines, lanes, *(part.source for part in parts), *tables, loops])
 
 
-def _table(name: str, numbers: Array) -> str:
-    listed = ", ".join(str(n) for n in numbers) or "0"
+def transition(by_state: ca.SX, h: ca.SX, *, stiff: bool) -> tuple[ca.SX, ca.SX]:
+    """P and Q of a step along which the derivatives of the rates are constant: x moves on by
+    P dx + Q f, with a constant further rate f.
+
+    That is the midpoint rule; with stiff states exp(h by_state) is replaced by its Pade approximant
+    (1 + z/3)/(1 - 2z/3 + z^2/6), which damps them.
+    """
+    eye, z = ca.SX.eye(by_state.shape[0]), h * by_state
+    if not stiff:
+        return eye + z + z @ z / 2, h * (eye + z / 2)
+    n = by_state.shape[0]
+    right = ca.horzcat(eye + z / 3, h * (eye - z / 6))
+    both = _divided(eye - 2 / 3 * z + z @ z / 6, right)
+    return both[:, :n], both[:, n:]
+
+
+def _divided(left: ca.SX, right: ca.SX) -> ca.SX:
+    """left^-1 right. No pivots are sought: what settles makes the diagonal large, the rest is near
+    1."""
+    both = ca.horzcat(left, right)
+    for k in range(left.shape[0]):
+        both[k, :] = both[k, :] / both[k, k]
+        for i in range(left.shape[0]):
+            if i != k and both[i, k].nnz():
+                both[i, :] = both[i, :] - both[i, k] * both[k, :]
+        both = ca.sparsify(both)
+    return both[:, left.shape[1] :]
+
+
+def _nonzeros(matrices: Sequence[ca.SX]) -> list[ca.SX]:
+    return [ca.cse(ca.vertcat(*(one.nz[:] for one in matrices)))]
+
+
+def _places(name: str, matrices: Sequence[ca.SX]) -> list[str]:
+    """Tables of the rows and the columns of nonzeros."""
+    at = [one.sparsity().get_triplet() for one in matrices]
+    both = (("ROW", np.hstack([rows for rows, _ in at])), ("COLUMN", np.hstack([c for _, c in at])))
+    return [_table(f"{name}_{key}", numbers) for key, numbers in both]
+
+
+def _times(name: str, matrix: ca.SX) -> str:
+    """NAME_times(by, x, out): adds the product of a matrix, given its nonzeros, with a vector."""
+    rows, columns = matrix.sparsity().get_triplet()
+    terms = enumerate(zip(rows, columns, strict=True))
+    lines = [f"  out[{i}] += by[{k}] * x[{j}];\n" for k, (i, j) in terms]
+    return f"INLINE void {name}_times(const V* by, const V* x, V* out) {{\n{''.join(lines)}}}\n"
+
+
+def _table(name: str, numbers: Array | Sequence[int]) -> str:
+    listed = ", ".join(str(int(n)) for n in numbers) or "0"
     return f"static const int {name}[] = {{{listed}}};\n"

@@ -3,15 +3,20 @@
    Around functions of a system that were written above:
      step_1(x, kept, out)    a step's end; x is the state and behind it the step's inputs: its length
                              and the drive at its beginning, middle and end
-     rates_1(x, kept, out)   d(state)/dt, and the nonzeros of its derivatives; x is the state and
-                             behind it the drive
-     seen_1(x, kept, out)    what is seen, and the nonzeros of its derivatives; x as for the rates
-   each after NAME_0(p, kept), which is what they need of p alone. The derivatives' nonzeros come
-   column by column: of the state, of the drive, of p. RATES_ROW, RATES_COLUMN, SEEN_ROW and
-   SEEN_COLUMN say where they stand; RX, RD and RP how many there are of each for the rates, SX, SD
-   and SP for what is seen. */
+     hop_1(x, kept, out)     a step linearised: P and Q, of dx' = P dx + Q (R du + S dp), then R and S;
+                             x is the state and the drive in the middle of the step, and its length
+     seen_1(x, kept, out)    what is seen, and its derivatives by state, drive and p; x is the state
+                             and behind it the drive
+   each after NAME_0(p, kept), which is what they need of p alone. Of matrices there are the nonzeros,
+   column by column. HOP_ROW, HOP_COLUMN, SEEN_ROW and SEEN_COLUMN say where those by drive and p
+   stand; p_times, q_times and seen_times (by the state) add the product with a vector. */
 
 #define NODE (1 + 3 * ND)
+
+#define UNROLLED _Pragma("GCC unroll 8")
+
+/* Steps whose inputs are read at once: numbers written one by one are slow to read as a vector. */
+#define BLOCK 16
 
 /* What dry friction forgets of the start falls below 1e-308, where processors of this kind are a
    hundred times slower: there it is 0. */
@@ -28,8 +33,8 @@
    inputs (steps, NODE);  at (samples, ND) the drive at the samples;  p (NP)
    states (steps + 1, NX), of which the first is given;  seen (samples, NY)
    value (entries)         the entries of dp/dq
-   moved_at (samples, ND, moves), moved (steps, 3, ND, moves)   of d(drive)/dq, its columns that
-                           are not zero; the second at the beginning, middle and end of the steps
+   moved_at (samples, ND, moves), moved (steps, ND, moves)   of d(drive)/dq, its columns that are not
+                           zero; the second in the middle of the steps
    data, weight (samples, NY)   what was recorded, and 1/sigma, 0 where nothing was
    more (samples, NY, extras)   further columns
    gram (n, n)             the result: J'J over all samples, J = [d/dstart | d/dq | more | off]
@@ -53,7 +58,7 @@ typedef struct {
 typedef struct {
   const Run* of[L];
   long long own, most;
-  V step_kept[K_STEP + 1], rates_kept[K_RATES + 1], seen_kept[K_SEEN + 1];
+  V step_kept[K_STEP + 1], hop_kept[K_HOP + 1], seen_kept[K_SEEN + 1];
 } Group;
 
 static void group_of(const Run* runs, long long from, long long count, Group* group) {
@@ -68,18 +73,33 @@ static void group_of(const Run* runs, long long from, long long count, Group* gr
     for (i = 0; i < NP; ++i) p[i][l] = run->p[i];
   }
   step_0(p, group->step_kept);
-  rates_0(p, group->rates_kept);
+  hop_0(p, group->hop_kept);
   seen_0(p, group->seen_kept);
 }
 
-/* The length and drive of step k; of a run that has ended, a step of no length. */
-static void step_inputs(const Group* group, long long k, V* in) {
+/* The length and drive of BLOCK steps from k on; of a run that has ended, steps of no length. */
+static void block_inputs(const Group* group, long long k, V* in) {
+  long long s;
   int l, i;
   for (l = 0; l < L; ++l) {
     const Run* run = group->of[l];
-    const double* from = run->inputs + (k < run->steps ? k : run->steps - 1) * NODE;
-    for (i = 0; i < NODE; ++i) in[i][l] = from[i];
-    if (k >= run->steps) in[0][l] = 0.0;
+    for (s = 0; s < BLOCK; ++s) {
+      const double* from = run->inputs + (k + s < run->steps ? k + s : run->steps - 1) * NODE;
+      for (i = 0; i < NODE; ++i) in[s * NODE + i][l] = from[i];
+      if (k + s >= run->steps) in[s * NODE][l] = 0.0;
+    }
+  }
+}
+
+/* The states before BLOCK steps from k on, and behind them; of a run that has ended, its last. */
+static void block_states(const Group* group, long long k, V* x) {
+  long long s;
+  int l, i;
+  for (l = 0; l < L; ++l) {
+    const Run* run = group->of[l];
+    for (s = 0; s <= BLOCK; ++s)
+      for (i = 0; i < NX; ++i)
+        x[s * NX + i][l] = run->states[(k + s < run->steps ? k + s : run->steps) * NX + i];
   }
 }
 
@@ -103,11 +123,11 @@ static void drive_at(const Group* group, long long k, long long each, V* x) {
 long long rr_lanes(void) { return L; }
 
 void rr_predict(long long count, const Run* runs, long long each) {
-  long long from, k, sample;
+  long long from, k, s, sample;
   FORGETS;
   for (from = 0; from < count; from += L) {
     Group group;
-    V x[NX + NODE], at[NX + ND], out[NX + RX + RD + RP + NY + SX + SD + SP];
+    V in[BLOCK * NODE], made[BLOCK * NX], x[NX + NODE], at[NX + ND], out[NX + NY + SEEN];
     int l, i;
     group_of(runs, from, count, &group);
     for (l = 0; l < L; ++l)
@@ -122,44 +142,90 @@ void rr_predict(long long count, const Run* runs, long long each) {
             for (i = 0; i < NY; ++i) group.of[l]->seen[sample * NY + i] = out[i][l];
       }
       if (k == group.most) break;
-      step_inputs(&group, k, x + NX);
+      s = k % BLOCK;
+      if (s == 0) block_inputs(&group, k, in);
+      for (i = 0; i < NODE; ++i) x[NX + i] = in[s * NODE + i];
       step_1(x, group.step_kept, out);
-      for (i = 0; i < NX; ++i) x[i] = out[i];
-      for (l = 0; l < group.own; ++l)
-        if (k < group.of[l]->steps)
-          for (i = 0; i < NX; ++i) group.of[l]->states[(k + 1) * NX + i] = x[i][l];
+      for (i = 0; i < NX; ++i) made[s * NX + i] = x[i] = out[i];
+      if (s < BLOCK - 1 && k < group.most - 1) continue;
+      for (l = 0; l < group.own; ++l) {
+        double* states = group.of[l]->states + (k - s + 1) * NX;
+        long long c, most = (group.of[l]->steps - k + s) * NX;
+        for (c = 0; c < (s + 1) * NX && c < most; ++c) states[c] = made[c][l];
+      }
     }
   }
   REMEMBERS;
 }
 
-/* Room for a group: M (NX, n) the derivatives of the state, n = NX + nq; four slopes of it; the
-   rows of J at a sample (NY, wide); and J'J, its upper triangle row by row. */
+/* Derivatives by q are sums of products: target += by * from, with `by` a nonzero of R or S and
+   `from` an entry of dp/dq or of d(drive)/dq. `last`: of its target. */
 typedef struct {
-  V *M, *at, *K[4], *force, *J, *S, *value, *moved;
-  long long n, wide;
+  int target, by, from, last;
+} Term;
+
+static int by_target(const void* one, const void* other) {
+  const Term *a = one, *b = other;
+  return a->target != b->target ? a->target - b->target : a->by - b->by;
+}
+
+/* The terms of R, of which there are nr nonzeros, and of S, ns; returns how many. */
+static long long terms_of(const int* row, const int* column, int nr, int ns, const Asked* asked,
+                          Term* terms) {
+  long long count = 0, e, c;
+  int k;
+  for (k = 0; k < nr; ++k)
+    for (c = 0; c < asked->moves; ++c)
+      terms[count++] = (Term){row[k] * asked->nq + asked->move[c], k,
+                              asked->entries + column[k] * asked->moves + c, 0};
+  for (k = nr; k < nr + ns; ++k)
+    for (e = asked->first[column[k]]; e < asked->first[column[k] + 1]; ++e)
+      terms[count++] = (Term){row[k] * asked->nq + asked->column[e], k, e, 0};
+  qsort(terms, count, sizeof(Term), by_target);
+  for (k = 0; k < count; ++k)
+    terms[k].last = k == count - 1 || terms[k].target != terms[k + 1].target;
+  return count;
+}
+
+/* Targets without a term stay as they are. */
+INLINE void add_terms(const Term* terms, long long count, const V* by, const V* from, V* target) {
+  long long k;
+  for (k = 0; k < count; ++k) {
+    V sum = by[terms[k].by] * from[terms[k].from];
+    for (; !terms[k].last; ++k) sum += by[terms[k + 1].by] * from[terms[k + 1].from];
+    target[terms[k].target] = sum;
+  }
+}
+
+/* Room for a group: M (NX, n) the derivatives of the state, n = NX + nq; those of a step and of what
+   is seen by q; the rows of J at a sample (NY, wide); J'J, its upper triangle row by row; and what
+   the terms are taken from, with their tables. */
+typedef struct {
+  V *M, *of_step, *of_seen, *J, *S, *from;
+  Term *hop, *seen;
+  long long n, wide, hops, sees;
   void* all;
 } Room;
 
 static int room_for(const Asked* asked, Room* room) {
-  long long n = NX + asked->nq, wide = n + asked->extras + 1, k;
-  long long size = 6 * NX * n + (NX > NY ? NX : NY) * asked->nq + NY * wide +
-                   wide * (wide + 1) / 2 + asked->entries + ND * asked->moves + 1;
-  V* next;
-  room->all = aligned_alloc(sizeof(V), size * sizeof(V));
+  long long n = NX + asked->nq, wide = n + asked->extras + 1;
+  long long sizes[6] = {NX * n,    NX * asked->nq,          NY * asked->nq,
+                        NY * wide, wide * (wide + 1) / 2, asked->entries + ND * asked->moves};
+  V** places[6] = {&room->M, &room->of_step, &room->of_seen, &room->J, &room->S, &room->from};
+  long long hops = HOP_R * asked->moves + HOP_S * asked->nq;
+  long long sees = SEEN_R * asked->moves + SEEN_S * asked->nq, terms, total = 0, k;
+  for (k = 0; k < 6; ++k) total += sizes[k] * sizeof(V);
+  terms = ((hops + sees) * sizeof(Term) / sizeof(V) + 1) * sizeof(V);
+  room->all = aligned_alloc(sizeof(V), total + terms);
   if (!room->all) return 0;
-  memset(room->all, 0, size * sizeof(V));
+  memset(room->all, 0, total);
+  for (k = total = 0; k < 6; total += sizes[k++]) *places[k] = (V*)room->all + total;
+  room->hop = (Term*)((V*)room->all + total);
+  room->seen = room->hop + hops;
   room->n = n;
   room->wide = wide;
-  next = room->all;
-  room->M = next, next += NX * n;
-  room->at = next, next += NX * n;
-  for (k = 0; k < 4; ++k) room->K[k] = next, next += NX * n;
-  room->force = next, next += (NX > NY ? NX : NY) * asked->nq;
-  room->J = next, next += NY * wide;
-  room->S = next, next += wide * (wide + 1) / 2;
-  room->value = next, next += asked->entries;
-  room->moved = next;
+  room->hops = terms_of(HOP_ROW, HOP_COLUMN, HOP_R, HOP_S, asked, room->hop);
+  room->sees = terms_of(SEEN_ROW, SEEN_COLUMN, SEEN_R, SEEN_S, asked, room->seen);
   return 1;
 }
 
@@ -175,206 +241,110 @@ static void moved_at(const Group* group, const Asked* asked, int within, const l
   }
 }
 
-/* force (rows, nq) = by_p dp/dq + by_drive d(drive)/dq, from the nonzeros of all derivatives. */
-static void forced(const V* by, const int* row, const int* column, int skip, int nd, int np,
-                   int rows, const Asked* asked, const V* moved, const V* value, V* force) {
-  long long e, c;
-  int k;
-  memset(force, 0, sizeof(V) * rows * asked->nq);
-  for (k = skip; k < skip + nd; ++k)
-    for (c = 0; c < asked->moves; ++c)
-      force[row[k] * asked->nq + asked->move[c]] +=
-          by[k] * moved[(column[k] - NX) * asked->moves + c];
-  for (k = skip + nd; k < skip + nd + np; ++k)
-    for (e = asked->first[column[k] - NX - ND]; e < asked->first[column[k] - NX - ND + 1]; ++e)
-      force[row[k] * asked->nq + asked->column[e]] += by[k] * value[e];
-}
-
-/* out (NX, n) = fx M + [0 | force]. */
-static void slope(const V* by, const Asked* asked, const Room* room, const V* M, V* out) {
-  long long n = room->n, c;
-  int i, k;
-  for (i = 0; i < NX; ++i) {
-    memset(out + i * n, 0, sizeof(V) * NX);
-    memcpy(out + i * n + NX, room->force + i * asked->nq, sizeof(V) * asked->nq);
-  }
-  for (k = 0; k < RX; ++k) {
-    V* to = out + RATES_ROW[k] * n;
-    const V *from = M + RATES_COLUMN[k] * n, a = by[k];
-    for (c = 0; c < n; ++c) to[c] += a * from[c];
-  }
-}
-
-/* The linearised rates at a node (0, 1, 2) of step k, at the state x: `out` has what they are and
-   their derivatives, and the room the force. */
-static void linear(const Group* group, const Asked* asked, const Room* room, long long k, int node,
-                   const V* in, const V* x, V* out) {
-  V at[NX + ND];
-  long long place[L];
+/* M after step k, from the middle of its chord. */
+static void linear_step(const Group* group, const Asked* asked, const Room* room, long long k,
+                        const V* in, const V* x) {
+  V at[NX + ND + 1], out[HOP], m[NX], f[NX], to[NX];
+  const V *P = out, *Q = P + HOP_P, *by = Q + HOP_Q;
+  long long place[L], n = room->n, c;
   int i, l;
-  for (i = 0; i < NX; ++i) at[i] = x[i];
-  for (i = 0; i < ND; ++i) at[NX + i] = in[1 + node * ND + i];
-  for (l = 0; l < L; ++l) {
-    long long last = group->of[l]->steps - 1;
-    place[l] = 3 * (k < last ? k : last) + node;
-  }
-  rates_1(at, group->rates_kept, out);
-  if (asked->moves) moved_at(group, asked, 1, place, room->moved);
-  forced(out + NX, RATES_ROW, RATES_COLUMN, RX, RD, RP, NX, asked, room->moved, room->value,
-         room->force);
-}
-
-INLINE void reach(const Room* room, V h, const V* K) {
-  long long c;
-  for (c = 0; c < NX * room->n; ++c) room->at[c] = room->M[c] + h * K[c];
-}
-
-INLINE void arrive(const Room* room, V h) {
-  long long c;
-  for (c = 0; c < NX * room->n; ++c)
-    room->M[c] += h / 6.0 * (room->K[0][c] + 2.0 * (room->K[1][c] + room->K[2][c]) + room->K[3][c]);
-}
-
-#ifdef STIFF
-
-/* A step with the matrix z = h fx of its middle: (1 - 2z/3 + z^2/6)^-1 (1 + z/3), which damps. */
-static void linear_step(const Group* group, const Asked* asked, const Room* room, long long k,
-                        long long each, const V* in, const V* x, const V* end) {
-  V middle[NX], out[NX + RX + RD + RP], z[NX][NX], left[NX][NX], scale;
-  long long n = room->n, c;
-  int i, j, m;
-  V *M = room->M, *to = room->K[1];
-  (void)each;
-  for (i = 0; i < NX; ++i) middle[i] = (x[i] + end[i]) / 2.0;
-  linear(group, asked, room, k, 1, in, middle, out);
-  memset(z, 0, sizeof z);
-  for (m = 0; m < RX; ++m) z[RATES_ROW[m]][RATES_COLUMN[m]] = in[0] * out[NX + m];
-  for (i = 0; i < NX; ++i)
-    for (j = 0; j < NX; ++j) {
-      V square = all(0.0);
-      for (m = 0; m < NX; ++m) square += z[i][m] * z[m][j];
-      left[i][j] = all(i == j ? 1.0 : 0.0) - 2.0 / 3.0 * z[i][j] + square / 6.0;
+  for (i = 0; i < NX; ++i) at[i] = (x[i] + x[NX + i]) / 2.0;
+  for (i = 0; i < ND; ++i) at[NX + i] = in[1 + ND + i];
+  at[NX + ND] = in[0];
+  hop_1(at, group->hop_kept, out);
+  if (asked->moves) {
+    for (l = 0; l < L; ++l) {
+      long long last = group->of[l]->steps - 1;
+      place[l] = k < last ? k : last;
     }
-  memcpy(to, M, sizeof(V) * NX * n);
-  for (i = 0; i < NX; ++i)
-    for (c = 0; c < asked->nq; ++c) to[i * n + NX + c] += in[0] * room->force[i * asked->nq + c];
-  for (m = 0; m < RX; ++m) {
-    const V a = z[RATES_ROW[m]][RATES_COLUMN[m]], third = a / 3.0, sixth = a * in[0] / 6.0;
-    const V *from = M + RATES_COLUMN[m] * n, *force = room->force + RATES_COLUMN[m] * asked->nq;
-    V* row = to + RATES_ROW[m] * n;
-    for (c = 0; c < n; ++c) row[c] += third * from[c];
-    for (c = 0; c < asked->nq; ++c) row[NX + c] -= sixth * force[c];
+    moved_at(group, asked, 1, place, room->from + asked->entries);
   }
-  /* No pivots are looked for: what settles makes the diagonal large, the rest is near 1. */
-  for (m = 0; m < NX; ++m) {
-    scale = 1.0 / left[m][m];
-    for (j = m; j < NX; ++j) left[m][j] *= scale;
-    for (c = 0; c < n; ++c) to[m * n + c] *= scale;
-    for (i = 0; i < NX; ++i) {
-      const V factor = left[i][m];
-      if (i == m || !any(factor != all(0.0))) continue;
-      for (j = m; j < NX; ++j) left[i][j] -= factor * left[m][j];
-      for (c = 0; c < n; ++c) to[i * n + c] -= factor * to[m * n + c];
+  add_terms(room->hop, room->hops, by, room->from, room->of_step);
+  for (c = 0; c < n; ++c) {
+    UNROLLED for (i = 0; i < NX; ++i) m[i] = room->M[i * n + c], to[i] = all(0.0);
+    p_times(P, m, to);
+    if (c >= NX) {
+      UNROLLED for (i = 0; i < NX; ++i) f[i] = room->of_step[i * asked->nq + c - NX];
+      q_times(Q, f, to);
+    }
+    UNROLLED for (i = 0; i < NX; ++i) room->M[i * n + c] = to[i];
+  }
+}
+
+/* Which rows of J are not 0: the joint's angle is the servo's alone, and most of what is asked for
+   leaves it as it is. Returns how many. */
+static int rows_there(const Asked* asked, int* there) {
+  int i, m, own[NY], count = 0;
+  for (i = 0; i < NY; ++i) own[i] = BY_STATE[i] || asked->extras > 0;
+  for (m = 0; m < SEEN_R + SEEN_S; ++m)
+    if (m >= SEEN_R || asked->moves) own[SEEN_ROW[m]] = 1;
+  for (i = 0; i < NY; ++i) there[i] = own[i] ? count++ : -1;
+  return count;
+}
+
+/* J'J of some rows. */
+INLINE void add_rows(const V* J, long long wide, V* S, int rows) {
+  long long c, b;
+  int i;
+  for (c = 0; c < wide; S += wide - c, ++c) {
+    V own[4];
+    UNROLLED for (i = 0; i < rows; ++i) own[i] = J[i * wide + c];
+    for (b = c; b < wide; ++b) {
+      V sum = S[b - c];
+      UNROLLED for (i = 0; i < rows; ++i) sum += own[i] * J[i * wide + b];
+      S[b - c] = sum;
     }
   }
-  memcpy(M, to, sizeof(V) * NX * n);
 }
 
-#else
-
-/* The derivative of a step: of a fine one by the midpoint rule along its chord, of others of the
-   classical Runge-Kutta step itself, whose stages' rates are worked out with their derivatives. */
-static void linear_step(const Group* group, const Asked* asked, const Room* room, long long k,
-                        long long each, const V* in, const V* x, const V* end) {
-  static const int NODES[4] = {0, 1, 1, 2};
-  static const double REACH[4] = {0.0, 0.5, 0.5, 1.0};
-  V at[NX], out[NX + RX + RD + RP];
-  long long c;
-  int i, stage;
-  if (each >= FINE) {
-    for (i = 0; i < NX; ++i) at[i] = (x[i] + end[i]) / 2.0;
-    linear(group, asked, room, k, 1, in, at, out);
-    slope(out + NX, asked, room, room->M, room->K[0]);
-    reach(room, in[0] / 2.0, room->K[0]);
-    slope(out + NX, asked, room, room->at, room->K[1]);
-    for (c = 0; c < NX * room->n; ++c) room->M[c] += in[0] * room->K[1][c];
-    return;
-  }
-  for (i = 0; i < NX; ++i) at[i] = x[i];
-  for (stage = 0; stage < 4; ++stage) {
-    V h = REACH[stage] * in[0];
-    if (stage) {
-      for (i = 0; i < NX; ++i) at[i] = x[i] + h * out[i];
-      reach(room, h, room->K[stage - 1]);
-    }
-    linear(group, asked, room, k, NODES[stage], in, at, out);
-    slope(out + NX, asked, room, stage ? room->at : room->M, room->K[stage]);
-  }
-  arrive(room, in[0]);
-}
-
-#endif
-
-/* A prediction that has left the numbers says nothing at this sample, nor in a gap. */
-static void leave_out(V* row, long long wide, int l) {
-  long long c;
-  for (c = 0; c < wide; ++c) row[c][l] = 0.0;
-}
-
-/* What a sample adds to J'J: the rows of J by what is seen there. */
-static void seen_at(const Group* group, const Asked* asked, const Room* room, long long k,
-                    long long each, const V* x) {
-  V at[NX + ND], out[NY + SX + SD + SP], weight[NY];
-  long long place[L], n = room->n, wide = room->wide, c, b;
-  V *row, *S = room->S;
-  int i, l, m, there[NY];
+/* What a sample adds to J'J. */
+static void seen_at(const Group* group, const Asked* asked, const Room* room, const int* there,
+                    int rows, long long k, long long each, const V* x) {
+  V at[NX + ND], out[NY + SEEN], off[NY], weight[NY], m[NX], to[NY];
+  const V* by = out + NY;
+  long long place[L], n = room->n, wide = room->wide, c;
+  int i, l;
   for (i = 0; i < NX; ++i) at[i] = x[i];
   drive_at(group, k, each, at + NX);
   seen_1(at, group->seen_kept, out);
   for (l = 0; l < L; ++l) {
     int seen = at_sample(group, l, k, each, place + l);
-    for (i = 0; i < NY; ++i)
-      weight[i][l] = seen ? group->of[l]->weight[place[l] * NY + i] : 0.0;
-  }
-  if (asked->moves) moved_at(group, asked, 0, place, room->moved);
-  forced(out + NY, SEEN_ROW, SEEN_COLUMN, SX, SD, SP, NY, asked, room->moved, room->value,
-         room->force);
-  for (i = 0; i < NY; ++i) {
-    row = room->J + i * wide;
-    memset(row, 0, sizeof(V) * NX);
-    memcpy(row + NX, room->force + i * asked->nq, sizeof(V) * asked->nq);
-    /* The joint's angle is the servo's alone: most of what is asked for leaves it as it is. */
-    there[i] = asked->extras > 0;
-  }
-  for (m = 0; m < SX + SD + SP; ++m)
-    if (m < SX || m >= SX + SD || asked->moves) there[SEEN_ROW[m]] = 1;
-  for (m = 0; m < SX; ++m) {
-    const V *from = room->M + SEEN_COLUMN[m] * n, a = out[NY + m];
-    row = room->J + SEEN_ROW[m] * wide;
-    for (c = 0; c < n; ++c) row[c] += a * from[c];
-  }
-  for (i = 0; i < NY; ++i) {
-    row = room->J + i * wide;
-    for (l = 0; l < L; ++l) {
-      const Run* run = group->of[l];
-      for (c = 0; c < asked->extras; ++c)
-        row[n + c][l] = run->more[(place[l] * NY + i) * asked->extras + c];
-      row[wide - 1][l] = out[i][l] - run->data[place[l] * NY + i];
-    }
-    for (l = 0; l < L; ++l)
-      if (!isfinite(row[wide - 1][l])) leave_out(row, wide, l);
-    for (c = 0; c < wide; ++c) row[c] *= weight[i];
-    if (!there[i]) S[wide * (wide + 1) / 2 - 1] += row[wide - 1] * row[wide - 1];
-  }
-  for (c = 0; c < wide; ++c) {
-    V* sum = S + c * wide - c * (c - 1) / 2 - c;
     for (i = 0; i < NY; ++i) {
-      const V a = room->J[i * wide + c];
-      row = room->J + i * wide;
-      if (there[i])
-        for (b = c; b < wide; ++b) sum[b] += a * row[b];
+      weight[i][l] = seen ? group->of[l]->weight[place[l] * NY + i] : 0.0;
+      off[i][l] = group->of[l]->data[place[l] * NY + i];
     }
   }
+  if (asked->moves) moved_at(group, asked, 0, place, room->from + asked->entries);
+  add_terms(room->seen, room->sees, by + SEEN_X, room->from, room->of_seen);
+  for (i = 0; i < NY; ++i) off[i] = (out[i] - off[i]) * weight[i];
+  for (c = 0; c < n; ++c) {
+    UNROLLED for (i = 0; i < NX; ++i) m[i] = room->M[i * n + c];
+    UNROLLED for (i = 0; i < NY; ++i) to[i] = c < NX ? all(0.0) : room->of_seen[i * asked->nq + c - NX];
+    seen_times(by, m, to);
+    for (i = 0; i < NY; ++i)
+      if (there[i] >= 0) room->J[there[i] * wide + c] = to[i] * weight[i];
+  }
+  for (i = 0; i < NY; ++i) {
+    V* row = room->J + there[i] * wide;
+    for (l = 0; there[i] >= 0 && l < L; ++l)
+      for (c = 0; c < asked->extras; ++c)
+        row[n + c][l] =
+            group->of[l]->more[(place[l] * NY + i) * asked->extras + c] * weight[i][l];
+    /* A prediction that has left the numbers says nothing at this sample, nor in a gap. */
+    for (l = 0; l < L; ++l)
+      if (!isfinite(off[i][l])) {
+        off[i][l] = 0.0;
+        for (c = 0; there[i] >= 0 && c < wide; ++c) row[c][l] = 0.0;
+      }
+    if (there[i] >= 0)
+      row[wide - 1] = off[i];
+    else
+      room->S[wide * (wide + 1) / 2 - 1] += off[i] * off[i];
+  }
+  for (i = 0; i + 4 <= rows; i += 4) add_rows(room->J + i * wide, wide, room->S, 4);
+  if (rows - i == 3) add_rows(room->J + i * wide, wide, room->S, 3);
+  if (rows - i == 2) add_rows(room->J + i * wide, wide, room->S, 2);
+  if (rows - i == 1) add_rows(room->J + i * wide, wide, room->S, 1);
 }
 
 int rr_grams(long long count, const Run* runs, long long each, long long nq, long long entries,
@@ -382,32 +352,25 @@ int rr_grams(long long count, const Run* runs, long long each, long long nq, lon
              const long long* move) {
   const Asked asked = {nq, entries, moves, extras, first, column, move};
   long long from, k, c, b;
+  int there[NY], rows = rows_there(&asked, there);
   Room room;
   if (!room_for(&asked, &room)) return 0;
   FORGETS;
   for (from = 0; from < count; from += L) {
     Group group;
-    V x[NX], end[NX], in[NODE];
+    V x[(BLOCK + 1) * NX], in[BLOCK * NODE];
     int l, i;
     group_of(runs, from, count, &group);
     memset(room.M, 0, sizeof(V) * NX * room.n);
     memset(room.S, 0, sizeof(V) * room.wide * (room.wide + 1) / 2);
     for (i = 0; i < NX; ++i) room.M[i * room.n + i] = all(1.0);
-    for (l = 0; l < L; ++l) {
-      for (i = 0; i < NX; ++i) x[i][l] = group.of[l]->states[i];
-      for (c = 0; c < entries; ++c) room.value[c][l] = group.of[l]->value[c];
-    }
+    for (l = 0; l < L; ++l)
+      for (c = 0; c < entries; ++c) room.from[c][l] = group.of[l]->value[c];
     for (k = 0; k <= group.most; ++k) {
-      if (k % each == 0) seen_at(&group, &asked, &room, k, each, x);
-      if (k == group.most) break;
-      step_inputs(&group, k, in);
-      for (l = 0; l < L; ++l) {
-        const Run* run = group.of[l];
-        long long next = k < run->steps ? k + 1 : run->steps;
-        for (i = 0; i < NX; ++i) end[i][l] = run->states[next * NX + i];
-      }
-      linear_step(&group, &asked, &room, k, each, in, x, end);
-      for (i = 0; i < NX; ++i) x[i] = end[i];
+      long long s = k % BLOCK;
+      if (s == 0) block_inputs(&group, k, in), block_states(&group, k, x);
+      if (k % each == 0) seen_at(&group, &asked, &room, there, rows, k, each, x + s * NX);
+      if (k < group.most) linear_step(&group, &asked, &room, k, in + s * NODE, x + s * NX);
     }
     for (l = 0; l < group.own; ++l) {
       double* gram = group.of[l]->gram;

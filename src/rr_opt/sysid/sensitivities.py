@@ -10,8 +10,7 @@ residual.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array, Indices
-from rr_opt.mechanics.code_generation import ArrayFunction
-from rr_opt.sysid.compiled import FINE, Rows
+from rr_opt.sysid.compiled import Rows
 from rr_opt.sysid.shooting import DrivePath, Path, System, arrays_of, code_of
 
 Jacobian = tuple[Array, Array, Array]
@@ -34,18 +32,18 @@ class DriveSlopes:
     """Derivatives of the drive by those wanted quantities that move it.
 
     at       (size, samples, k) at the samples
-    nodes    (size, 3, steps, k) at the beginning, in the middle and at the end of each step
+    middle   (size, steps, k) in the middle of each step
     columns  (k,) indices of these quantities
     """
 
     at: Array
-    nodes: Array
+    middle: Array
     columns: Indices
 
     def part(self, first: int, last: int, each: int) -> DriveSlopes:
         """From sample `first` to sample `last`, with `each` steps between two samples."""
-        nodes = self.nodes[:, :, first * each : last * each]
-        return DriveSlopes(self.at[:, first : last + 1], nodes, self.columns)
+        middle = self.middle[:, first * each : last * each]
+        return DriveSlopes(self.at[:, first : last + 1], middle, self.columns)
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,8 @@ class Slopes:
 class Hats:
     """Rows of the drive that are moved by hat functions: 1 at one sample, 0 at its neighbours.
 
-    passed  (3, steps) fraction of the time between two samples that has passed at each node
+    passed  (steps,) fraction of the time between two samples that has passed in the middle of each
+            step
     """
 
     rows: NDArray[np.int_]
@@ -104,10 +103,8 @@ def linear(
 
     wanted  (np, nw) derivatives of p by the wanted quantities
     """
-    for fine, alike in itertools.groupby(parts, lambda one: one.path.each >= FINE):
-        how = _frozen if system.stiff else _chords if fine else _stages
-        for some in _at_once(alike):
-            yield from _linear(how, system, some, p, wanted)
+    for some in _at_once(parts):
+        yield from _linear(system, some, p, wanted)
 
 
 def _at_once(parts: Iterable[Part]) -> Iterator[Sequence[Part]]:
@@ -124,14 +121,10 @@ def _at_once(parts: Iterable[Part]) -> Iterator[Sequence[Part]]:
 
 
 def _linear(
-    how: Callable[[_Along], tuple[Array, Array]],
-    system: System,
-    parts: Sequence[Part],
-    p: Array,
-    wanted: Array,
+    system: System, parts: Sequence[Part], p: Array, wanted: Array
 ) -> Iterator[LinearMotion]:
     size, nd = parts[0].made.states.shape[0], parts[0].path.at.shape[0]
-    A, B = how(_Along(system, parts, p, wanted))
+    A, B = _transitions(_Along(system, parts, p, wanted))
     at = np.hstack([one.made.states[:, :: one.path.each] for one in parts])
     drive = np.hstack([one.path.at for one in parts])
     channels = parts[0].made.seen.shape[1]
@@ -188,121 +181,50 @@ class _Along:
     wanted: Array
 
     @cached_property
-    def ends(self) -> tuple[Array, Array]:
-        """The states at the beginning and at the end of each step (size, steps)."""
+    def middle(self) -> Array:
+        """The states in the middle of each step's chord (size, steps)."""
         states = [one.made.states for one in self.parts]
-        return np.hstack([x[:, :-1] for x in states]), np.hstack([x[:, 1:] for x in states])
+        return np.hstack([(x[:, :-1] + x[:, 1:]) / 2 for x in states])
 
     @cached_property
     def h(self) -> Array:
         """Length of each step, s."""
         return np.concatenate([one.path.h for one in self.parts])
 
-    @cached_property
-    def nodes(self) -> Array:
-        """The drive (size, 3, steps)."""
-        return _joined([one.path.nodes for one in self.parts], 2)
-
-    @cached_property
-    def drive_by(self) -> Array | None:
-        """Derivatives of the drive (size, 3, steps, k)."""
-        some = [one.drive_by.nodes for one in self.parts if one.drive_by]
-        return _joined(some, 2) if some else None
-
-    @cached_property
-    def hats(self) -> Hats | None:
-        """Hats of all paths."""
-        some = [one.hats for one in self.parts if one.hats]
-        return Hats(some[0].rows, np.hstack([one.passed for one in some])) if some else None
-
-    def jacobian(self, at: Array, drive: Array) -> Jacobian:
-        """Of the rates by state, drive and p (n, size, ...) each, at states and drives (..., n)."""
-        by = arrays_of(self.system, "rates_by")(*at, *drive, *self.p)
-        return _split(by, len(at), len(drive), self.p.size, at.shape[1])
-
-    def both(self, jacobian: Jacobian, node: int) -> Array:
-        """fx and f_w side by side (steps, size, size + nw) at a node of all steps."""
-        fx, fd, fp = jacobian
+    def forces(self) -> tuple[Array, Array]:
+        """The rates' derivatives by the state (steps, size, size), and by the wanted quantities and
+        the hats (steps, size, nw), in the middle of all steps."""
+        drive = _joined([one.path.nodes[:, 1] for one in self.parts], 1)
+        by = arrays_of(self.system, "rates_by")(*self.middle, *drive, *self.p)
+        fx, fd, fp = _split(by, len(self.middle), len(drive), self.p.size, self.h.size)
         force = fp @ self.wanted
-        first = self.parts[0].drive_by
-        if first is not None and self.drive_by is not None:
-            force[:, :, first.columns] += np.einsum("sid,dsw->siw", fd, self.drive_by[:, node])
-        if self.hats is None:
-            return np.concatenate([fx, force], axis=2)
-        hat = fd[:, :, self.hats.rows]
-        later = hat * self.hats.passed[node][:, None, None]
-        return np.concatenate([fx, force, hat - later, later], axis=2)
-
-    @property
-    def rates(self) -> ArrayFunction:
-        """d(state)/dt."""
-        return arrays_of(self.system, "rates")
+        moved = [one.drive_by for one in self.parts if one.drive_by]
+        if moved:
+            by_drive = _joined([one.middle for one in moved], 1)
+            force[:, :, moved[0].columns] += np.einsum("sid,dsw->siw", fd, by_drive)
+        hats = [one.hats for one in self.parts if one.hats]
+        if not hats:
+            return fx, force
+        hat = fd[:, :, hats[0].rows]
+        later = hat * np.hstack([one.passed for one in hats])[:, None, None]
+        return fx, np.concatenate([force, hat - later, later], axis=2)
 
 
-def _stages(along: _Along) -> tuple[Array, Array]:
-    """Transition matrices: the derivatives of the classical Runge-Kutta step itself.
+def _transitions(along: _Along) -> tuple[Array, Array]:
+    """The midpoint rule along the steps' chords: A (steps, size, size), B (steps, size, nw).
 
-    Where a force sets in within a step, they differ from those of the exact motion.
+    With stiff states exp(z), z = h fx, is replaced by its Pade approximant
+    (1 + z/3)/(1 - 2z/3 + z^2/6), which damps them.
     """
-    x, h = along.ends[0], along.h
-    slopes = [np.zeros_like(x)]
-    for node, reach in ((0, 0.0), (1, 0.5), (1, 0.5)):
-        at = x + reach * h * slopes[-1]
-        slope = along.rates(*at, *along.nodes[:, node], *along.p)
-        slopes.append(np.array(np.broadcast_arrays(*slope)))
-
-    def both(k: int, reach: float) -> Array:
-        node = (k + 1) // 2
-        return along.both(along.jacobian(x + reach * h * slopes[k], along.nodes[:, node]), node)
-
-    return _combined(h, len(x), both)
-
-
-def _chords(along: _Along) -> tuple[Array, Array]:
-    """Transition matrices of fine steps: the midpoint rule along their chords."""
-    (before, after), h = along.ends, along.h[:, None, None]
-    size = len(before)
-    both = h * along.both(along.jacobian((before + after) / 2, along.nodes[:, 1]), 1)
-    z, push = both[:, :, :size], both[:, :, size:]
-    return np.eye(size) + z + z @ z / 2, push + z @ push / 2
-
-
-def _combined(h: Array, size: int, both: Callable[[int, float], Array]) -> tuple[Array, Array]:
-    """The four stages of the classical Runge-Kutta method, linearised.
-
-    both  (stage, fraction of the step) -> fx and f_w side by side
-    """
-    h = h[:, None, None]
-    first = both(0, 0.0)
-    eye = np.eye(size, first.shape[2])
-
-    def slope(f: Array, M: Array) -> Array:
-        out = f[:, :, :size] @ M
-        out[:, :, size:] += f[:, :, size:]
-        return out
-
-    k1 = first
-    k2 = slope(both(1, 0.5), eye + h / 2 * k1)
-    k3 = slope(both(2, 0.5), eye + h / 2 * k2)
-    k4 = slope(both(3, 1.0), eye + h * k3)
-    out = eye + h / 6 * (k1 + 2 * (k2 + k3) + k4)
-    return out[:, :, :size], out[:, :, size:]
-
-
-def _frozen(along: _Along) -> tuple[Array, Array]:
-    """Transition matrices of fine steps with stiff states.
-
-    The matrix z = h fx of the step's midpoint is held over the whole step; exp(z) is replaced by
-    its Pade approximant (1 + z/3)/(1 - 2z/3 + z^2/6), which damps stiff modes.
-    """
-    (before, after), h = along.ends, along.h[:, None, None]
-    size = len(before)
-    both = along.both(along.jacobian((before + after) / 2, along.nodes[:, 1]), 1)
-    eye, z = np.eye(size), both[:, :, :size] * h
-    push = (eye - z / 6) @ (both[:, :, size:] * h)
+    h = along.h[:, None, None]
+    fx, force = along.forces()
+    eye, z, push = np.eye(fx.shape[1]), h * fx, h * force
+    if not along.system.stiff:
+        return eye + z + z @ z / 2, push + z @ push / 2
     left = eye - 2 / 3 * z + z @ z / 6
-    out = np.linalg.solve(left, np.concatenate([eye + z / 3, push], axis=2)).astype(float)
-    return out[:, :, :size], out[:, :, size:]
+    right = np.concatenate([eye + z / 3, push - z @ push / 6], axis=2)
+    both = np.linalg.solve(left, right).astype(float)
+    return both[:, :, : len(eye)], both[:, :, len(eye) :]
 
 
 def _split(parts, rows: int, nd: int, np_: int, count: int, nx: int | None = None) -> Jacobian:
@@ -368,7 +290,7 @@ def _rows(one: Sought) -> Rows:
     by, path = one.drive_by, one.path
     return Rows(
         *(path.inputs, path.at, path.each, one.p, one.made.states, one.wanted),
-        (by.at, by.nodes, by.columns) if by else None,
+        (by.at, by.middle, by.columns) if by else None,
         *(one.recorded.values, one.recorded.weight, one.more),
     )
 

@@ -199,18 +199,19 @@ def drive_slopes(
 
     path = path_at(given)
     at = np.empty((*path.at.shape, len(moving)))
-    nodes = np.empty((*path.nodes.shape, len(moving)))
+    middle = np.empty((len(path.nodes), path.h.size, len(moving)))
     for k, (_, name) in enumerate(moving):
-        low, high = _ends(name, given)
-        ends = [path_at({**given, name: value}) for value in (low, high)]
-        at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
-        nodes[:, :, :, k] = (ends[1].nodes - ends[0].nodes) / (high - low)
-    if here.smooth and here.rest:
-        # The onset of dphi may change within the first step: its integral has to be the change of
-        # phi.
-        rise = (nodes[0, 2, 0] - nodes[0, 0, 0]) / path.h[0]
-        at[1, 0] = nodes[1, :2, 0] = (6 * rise - nodes[1, 2, 0]) / 5
-    return DriveSlopes(at, nodes, np.array([k for k, _ in moving]))
+        values = _ends(name, given)
+        low, high = (path_at({**given, name: value}) for value in values)
+        apart = values[1] - values[0]
+        at[:, :, k] = (high.at - low.at) / apart
+        nodes = (high.nodes - low.nodes) / apart
+        middle[:, :, k] = nodes[:, 1]
+        if here.smooth and here.rest:
+            # The onset of dphi may change within the first step: its integral has to be the change
+            # of phi.
+            at[1, 0, k] = middle[1, 0, k] = (nodes[0, 2, 0] - nodes[0, 0, 0]) / path.h[0]
+    return DriveSlopes(at, middle, np.array([k for k, _ in moving]))
 
 
 def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:

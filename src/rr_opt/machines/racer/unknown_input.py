@@ -132,7 +132,7 @@ def linearised_inputs(
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
         every.append(drives)
-        own = own and _widened(DriveSlopes(own.at, _sampled(own.nodes, each), own.columns))
+        own = own and _widened(own, each)
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
     how = [*linear(system, parts, p, by)]
     for request, part, (seen, end) in zip(requests, parts, _carried(how, every), strict=True):
@@ -194,12 +194,14 @@ def _forced(how: LinearMotion, drives: Array) -> tuple[Array, Array]:
     )
 
 
-def _widened(own: DriveSlopes) -> DriveSlopes:
-    """Derivatives of the servo's part of the drive, with zero rows for the pushes."""
-    at, nodes = (
-        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))]) for part in (own.at, own.nodes)
+def _widened(own: DriveSlopes, each: int) -> DriveSlopes:
+    """Derivatives of the servo's part of the drive, with zero rows for the pushes; on average
+    between two samples, which are `each` steps apart."""
+    steps = own.middle.reshape(len(own.middle), -1, each, own.columns.size).mean(axis=2)
+    at, middle = (
+        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))]) for part in (own.at, steps)
     )
-    return DriveSlopes(at, nodes, own.columns)
+    return DriveSlopes(at, middle, own.columns)
 
 
 def _sampled(nodes: Array, each: int) -> Array:
@@ -211,9 +213,8 @@ def _sampled(nodes: Array, each: int) -> Array:
 
 
 def _passed(moments: Array) -> Array:
-    """Fraction of the time between two samples passed at each node of the steps (3, steps)."""
-    nodes = np.stack([moments[:-1:2], moments[1::2], moments[2::2]])
-    return nodes - np.arange((moments.size - 1) // 2)
+    """Fraction of the time between two samples that has passed in the middle of each step."""
+    return moments[1::2] - np.arange((moments.size - 1) // 2)
 
 
 def _drives(pushes: Array, t: Array) -> Array:
