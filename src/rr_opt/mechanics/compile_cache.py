@@ -32,15 +32,21 @@ _COMPILE_SECONDS = 60
 _WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
-def library(source: str, flags: tuple[str, ...], *, make: bool) -> ctypes.CDLL | None:
+def library(
+    source: str | Callable[[], str], flags: tuple[str, ...], *, make: bool, key: str = ""
+) -> ctypes.CDLL | None:
     """The library of a C source: the cached one, else compiled now if `make`; None if neither.
 
     The compiler is $CC, which may hold arguments, or `cc`.
+
+    key  what a source is made from, if making it takes time: it is then made only to be compiled
     """
     compiler = _compiler()
     if compiler is None or not hasattr(os, "geteuid"):
         return None
-    key = "\n".join((source, *compiler, *flags, _processor()))
+    if isinstance(source, str):
+        key = source
+    key = "\n".join((key, *compiler, *flags, _processor()))
     name = hashlib.sha256(key.encode()).hexdigest()[:32] + ".so"
     for folder in (_user_folder, _process_folder) if make else (_user_folder,):
         place = folder()
@@ -49,7 +55,8 @@ def library(source: str, flags: tuple[str, ...], *, make: bool) -> ctypes.CDLL |
         loaded = _loaded(place / name)
         if loaded is None and make:
             try:
-                _compile([*compiler, *flags], source, place / name)
+                text = source if isinstance(source, str) else source()
+                _compile([*compiler, *flags], text, place / name)
             except subprocess.SubprocessError:
                 return None
             except OSError:  # a full disk, or one that is read-only

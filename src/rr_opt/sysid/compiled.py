@@ -266,9 +266,11 @@ def _array(held: Sequence[_Held]) -> ctypes.Array:
     return (_CompiledRun * len(held))(*(one.run for one in held))
 
 
-def found(source: str, size: int, channels: int, *, make: bool) -> Compiled | None:
+def found(
+    source: str | Callable[[], str], size: int, channels: int, *, make: bool, key: str = ""
+) -> Compiled | None:
     """The compiled system, from the cache or compiled now; None if neither is possible."""
-    made = library(source, _FLAGS, make=make)
+    made = library(source, _FLAGS, make=make, key=key)
     return None if made is None else Compiled(made, size, channels)
 
 

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
+from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays, source_file
 from rr_opt.sysid.compiled import Compiled, found, source_of
 
 _FEW, _PAYS = 10_000, 100_000
@@ -110,17 +110,24 @@ def code_of(system: System, steps: int) -> Compiled | None:
 
 @lru_cache(maxsize=64)
 def _compiled(system: System, *, make: bool) -> Compiled | None:
-    source = _source(system)
-    sizes = system.rates.numel_in(0), system.seen.numel_out(0)
-    return found(source, *sizes, make=make) if source else None
-
-
-@lru_cache(maxsize=64)
-def _source(system: System) -> str | None:
+    rates, seen, stiff = system.rates, system.seen, bool(system.stiff)
+    key = "\n".join((rates.serialize(), seen.serialize(), str(stiff), _writer()))
+    sizes = rates.numel_in(0), seen.numel_out(0)
     try:
-        return source_of(_step(system), system.rates, system.seen, stiff=bool(system.stiff))
+        return found(
+            lambda: source_of(_step(system), rates, seen, stiff=stiff), *sizes, make=make, key=key
+        )
     except NotImplementedError:
         return None
+
+
+@lru_cache(maxsize=1)
+def _writer() -> str:
+    """All that writes a system's source."""
+    files = [("mechanics", "code_generation.py"), ("mechanics", "lanes.c")]
+    files += [("sysid", name) for name in ("compiled.py", "diagnose_lanes.c", "shooting.py")]
+    texts = [source_file(f"rr_opt.{package}", name) for package, name in files]
+    return "\n".join((ca.CasadiMeta.version(), *texts))
 
 
 @lru_cache(maxsize=256)
