@@ -10,8 +10,9 @@ predicted robot would drive on.
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,28 +48,32 @@ class FloorMap:
 
     places   of the wheels (2, 4, n), m;  begins  the sample in which each moment begins (moments,)
     slope    (4 moments,), gradient by shares of drag, everything else fitted
-    bends    second derivatives of each segment; refitting the parameters reduces them by
-             onto' inverse onto, with `onto` (nq, 4 moments)
+    bends    (segments, k, k) second derivatives, k = 4 moments of a segment; refitting the
+             parameters reduces them by onto' inverse onto, with `onto` (nq, 4 moments)
     """
 
     places: Array
     begins: NDArray[np.int_]
     slope: Array
-    bends: Sequence[Array]
+    bends: Array
     onto: Array
     inverse: Array
 
     def at(self, depth: Depth) -> Array:
         """The share of each moment for which each wheel is on a patch (4 moments,)."""
-        inside = _inside(depth(*self.places))
+        inside = np.tanh(depth(*self.places) / BORDER)
         whole = np.add.reduceat(inside, self.begins, axis=1)
-        lengths = np.diff(np.append(self.begins, inside.shape[1]))
-        return (whole / lengths).T.ravel()
+        return (1 + whole / np.diff(self.begins, append=inside.shape[1])).T.ravel() / 2
 
     def roughly(self, depth: Depth) -> Array:
         """The same, from the wheels' places in the middle of the moments."""
+        return (1 + np.tanh(depth(*self._middles) / BORDER)) / 2
+
+    @cached_property
+    def _middles(self) -> Array:
+        """The wheels' places in the middle of the moments (2, 4 moments)."""
         ends = np.append(self.begins[1:], self.places.shape[2])
-        return _inside(depth(*self.places[:, :, (self.begins + ends) // 2])).T.ravel()
+        return self.places[:, :, (self.begins + ends) // 2].transpose(0, 2, 1).reshape(2, -1)
 
     def gains(self, shares: Array) -> tuple[Array, Array]:
         """Gains of patches in chi-square, each at its best multiplier, and that; (patches,).
@@ -82,13 +87,9 @@ class FloorMap:
         return gain, multiplier
 
     def _gains(self, shares: Array) -> Array:
-        bend, at = np.zeros(len(shares)), 0
-        for H in self.bends:
-            own = shares[:, at : at + len(H)]
-            bend += np.einsum("ij,ij->i", own @ H, own)
-            at += len(H)
-        onto = shares @ self.onto.T
-        bend -= np.einsum("ij,jk,ik->i", onto, self.inverse, onto)
+        own = shares.T.reshape(*self.bends.shape[:2], -1)
+        onto = self.onto @ shares.T
+        bend = (own * (self.bends @ own)).sum((0, 1)) - (onto * (self.inverse @ onto)).sum(0)
         slope = shares @ self.slope
         more = np.where(bend > 0, -slope / np.where(bend > 0, bend, 1.0), 0.0)
         more = np.clip(more, _LEAST - 1.0, _MOST - 1.0) * (bend > 0)
@@ -132,7 +133,7 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
         np.concatenate([one.places.transpose(1, 0, 2) for one in along], axis=2),
         np.concatenate(begins),
         np.concatenate(slopes) - across.T @ (inverse @ g),
-        bends,
+        np.array(bends),
         across,
         inverse,
     )
@@ -151,10 +152,6 @@ def _pushes(along: Along, k: Array, count: int) -> Array:
 
 def _edges(samples: int, count: int) -> NDArray[np.int_]:
     return np.linspace(0, samples, count + 1).astype(int)
-
-
-def _inside(depth: Array) -> Array:
-    return (1 + np.tanh(depth / BORDER)) / 2
 
 
 _PLACES = 12
@@ -263,7 +260,7 @@ def _edge_values(of: Array, middle: Array) -> Mapping[str, float]:
 
 
 ROUND = Shape(
-    depth=lambda of: lambda x, y: of[2] - np.hypot(x - of[0], y - of[1]),
+    depth=lambda of: lambda x, y: of[2] - np.sqrt((x - of[0]) ** 2 + (y - of[1]) ** 2),
     grid=_circles,
     values=lambda of, _: {"x": float(of[0]), "y": float(of[1]), "radius": float(of[2])},
 )
