@@ -22,7 +22,7 @@ from rr_opt.array import Array
 from rr_opt.effects.floor_patch import BORDER
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.observed import Along, observed
-from rr_opt.machines.racer.unknown_input import PUSHES, linearised_inputs
+from rr_opt.machines.racer.unknown_input import PUSHES, cut, linearised_inputs
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.settings import SETTINGS
 
@@ -109,8 +109,8 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     scale[size : size + nq] = problem.scale
     bends, onto, slopes = [], [], []
     shared, g = np.diag(problem.prior), problem.prior * fit.u
-    pushes = [_pushes(seen, k, count) for seen in along]
-    linear = linearised_inputs(racer, requests, fit.effects, problem.names, pushes)
+    pushes = [_pushes(seen, k) for seen in along]
+    linear = linearised_inputs(racer, requests, fit.effects, problem.names, pushes, count)
     for one, part in zip(requests, linear, strict=True):
         evidence = fit.evidences[one.segment.run]
         weight = 1 / (1 + max(evidence.excess, 0) / problem.correlation_times(one.segment.run))
@@ -128,7 +128,7 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     across = np.hstack(onto)
     sizes = [one.t.size for one in along]
     firsts = np.cumsum([0, *sizes[:-1]])
-    begins = [first + _edges(n, count)[:-1] for first, n in zip(firsts, sizes, strict=True)]
+    begins = [first + cut(n, count)[:-1] for first, n in zip(firsts, sizes, strict=True)]
     return FloorMap(
         np.concatenate([one.places.transpose(1, 0, 2) for one in along], axis=2),
         np.concatenate(begins),
@@ -139,19 +139,11 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     )
 
 
-def _pushes(along: Along, k: Array, count: int) -> Array:
-    """(4 count, 7, n): each wheel's drag, N, in each moment, as on the rest of the floor."""
-    edges = _edges(along.t.size, count)
-    out = np.zeros((count, 4, len(PUSHES), along.t.size))
-    for moment in range(count):
-        during = slice(edges[moment], edges[moment + 1])
-        for wheel in range(4):
-            out[moment, wheel, wheel, during] = -k[wheel] * along.u[wheel, during]
-    return out.reshape(4 * count, len(PUSHES), along.t.size)
-
-
-def _edges(samples: int, count: int) -> NDArray[np.int_]:
-    return np.linspace(0, samples, count + 1).astype(int)
+def _pushes(along: Along, k: Array) -> Array:
+    """Each wheel's drag, N, as on the rest of the floor (4, 7, n)."""
+    out = np.zeros((4, len(PUSHES), along.t.size))
+    out[range(4), range(4)] = -k[:, None] * along.u
+    return out
 
 
 _PLACES = 12

@@ -13,9 +13,11 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.machines.racer.model import RacerModel
@@ -29,7 +31,7 @@ from rr_opt.motion.floor_motion import FloorMotion, solved
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Request, Segment
-from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, gram_of, linear
+from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, linear
 from rr_opt.sysid.shooting import DrivePath, Path, System
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
@@ -103,11 +105,13 @@ def linearised_inputs(
     effects: tuple[str, ...],
     wanted: tuple[str, ...],
     inputs: Sequence[Array],
+    pieces: int = 1,
 ) -> Iterator[Linearisation]:
     """Segments, all with the same values, linearised about zero inputs: in the initial state, the
     wanted quantities and the inputs.
 
     inputs  (k, 7, n) of each segment, rows as PUSHES
+    pieces  into which a segment is cut: inputs act in one of them each, a piece's k side by side
 
     One step from sample to sample is fine enough for the response to a push.
     """
@@ -134,64 +138,123 @@ def linearised_inputs(
         every.append(drives)
         own = own and _widened(DriveSlopes(own.at, _sampled(own.nodes, each), own.columns))
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
-    how = [*linear(system, parts, p, by)]
-    for request, part, (seen, end) in zip(requests, parts, _carried(how, every), strict=True):
-        recorded = simulator.recorded(request.segment)
-        weight = recorded.weight.ravel()
-        columns = (seen.reshape(weight.size, -1) * weight[:, None])[weight > 0]
-        residual = recorded.off(part.made.seen).ravel()[weight > 0]
-        yield Linearisation(gram_of(columns, residual), end)
+    recorded = [simulator.recorded(one.segment) for one in requests]
+    seen = [
+        _seen(how, drives, one.weight, one.off(part.made.seen), pieces)
+        for how, drives, one, part in zip(
+            linear(system, parts, p, by), every, recorded, parts, strict=True
+        )
+    ]
+    some = max(_COLUMNS_AT_ONCE // seen[0].seen.shape[2], 1)
+    for first in range(0, len(seen), some):
+        grams, ends = _whole(*_carried(seen[first : first + some]), pieces, len(by.T))
+        yield from map(Linearisation, grams, ends)
 
 
 _COLUMNS_AT_ONCE = 1000
 """Columns of segments side by side, to bound the memory."""
 
 
-def _carried(
-    every: Sequence[LinearMotion], drives: Sequence[Array]
-) -> Iterator[tuple[Array, Array]]:
-    """Derivatives of segments' outputs, (n, channels, ...), and of their last states, by initial
-    state, wanted quantities, and pushes with DRIVES (k, 10, n).
+def cut(samples: int, pieces: int) -> NDArray[np.int_]:
+    """The samples with which equal pieces of a segment begin, and its end (pieces + 1,)."""
+    return np.linspace(0, samples, pieces + 1).astype(int)
 
-    Segments, a few of them side by side, are padded to the same length.
+
+class _Seen(NamedTuple):
+    """A segment sample by sample. Columns are the wanted quantities and the inputs; where it says
+    `all`, the state before them and the residual after them.
+
+    A (n, size, size) and forced (n, size, columns)  to the next sample; none follows the last
+    begun    (pieces, size, k) what its inputs have done by the first sample of a piece
+    seen     (n, channels, all) direct derivatives of the outputs, in sigmas
+    known    (n, channels) where there are data
+    lengths  (pieces,) in samples
     """
-    some = max(_COLUMNS_AT_ONCE // max(len(drives[0]), 1), 1)
-    for first in range(0, len(every), some):
-        parts = [
-            (one, *_forced(one, d))
-            for one, d in zip(
-                every[first : first + some], drives[first : first + some], strict=True
-            )
-        ]
-        size, columns = parts[0][1].shape[1:]
-        longest = max(len(one.A) for one, *_ in parts)
-        A = np.zeros((longest, len(parts), size, size))
-        carried = np.zeros((longest + 1, len(parts), size, size + columns))
-        carried[0] = np.eye(size, size + columns)
-        for k, (one, forced, _) in enumerate(parts):
-            A[: len(one.A), k] = one.A
-            carried[1 : len(one.A) + 1, k, :, size:] = forced
-        for k in range(longest):
-            carried[k + 1] += A[k] @ carried[k]
-        for k, (one, _, direct) in enumerate(parts):
-            own = carried[: len(one.A) + 1, k]
-            seen = one.by_state @ own
-            seen[:, :, size:] += direct
-            yield seen, own[-1]
+
+    A: Array
+    forced: Array
+    begun: Array
+    seen: Array
+    known: NDArray[np.bool_]
+    lengths: NDArray[np.int_]
 
 
-def _forced(how: LinearMotion, drives: Array) -> tuple[Array, Array]:
-    """What wanted quantities and pushes with DRIVES (k, 10, n) add to the state from sample to
-    sample (n - 1, size, ...), and to the outputs at the samples (n, channels, ...)."""
-    wanted = how.by_wanted.shape[2]
+def _seen(how: LinearMotion, drives: Array, weight: Array, off: Array, pieces: int) -> _Seen:
+    """With inputs as DRIVES (k, 10, n)."""
+    (n, _, size), wanted = how.by_state.shape, how.by_wanted.shape[2]
+    edges = cut(n, pieces)
     at = np.ascontiguousarray(drives.transpose(2, 1, 0))
     earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
-    pushed = earlier @ at[:-1] + later @ at[1:]
-    rows = [*range(-FURTHER, 0), 0, 1]
-    return (
-        np.concatenate([how.B[:, :, :wanted], pushed], axis=2),
-        np.concatenate([how.by_wanted, how.by_drive[:, :, rows] @ at], axis=2),
+    forced = np.zeros((n, size, wanted + len(drives)))
+    forced[:-1, :, :wanted] = how.B[:, :, :wanted]
+    forced[:-1, :, wanted:] = late = later @ at[1:]
+    # The input of a piece's first sample sets in before it.
+    begun = np.concatenate([np.zeros((1, *late.shape[1:])), late[edges[1:-1] - 1]])
+    forced[edges[1:-1] - 1, :, wanted:] = 0.0
+    forced[:-1, :, wanted:] += earlier @ at[:-1]
+    direct = how.by_drive[:, :, [*range(-FURTHER, 0), 0, 1]] @ at
+    by = np.concatenate([how.by_state, how.by_wanted, direct], axis=2) * weight[:, :, None]
+    return _Seen(
+        np.concatenate([how.A, np.eye(size)[None]]),
+        forced,
+        begun,
+        np.concatenate([by, off[:, :, None]], axis=2),
+        weight > 0,
+        np.diff(edges),
     )
+
+
+def _carried(segments: Sequence[_Seen]) -> tuple[Array, Array]:
+    """J'J (segments, pieces, all, all) of pieces, by the state at their beginning and the columns;
+    and derivatives of the state at their end (segments, pieces, size, all).
+
+    All pieces, side by side, are padded to the same length.
+    """
+    A, forced, begun, seen, known, lengths = map(np.concatenate, zip(*segments, strict=True))
+    longest = int(lengths.max())
+    each = np.arange(longest)
+    at = np.minimum((np.cumsum(lengths) - lengths)[:, None] + each, len(A) - 1)
+    size, columns = A.shape[1], seen.shape[2]
+    carried = np.zeros((len(at), longest + 1, size, columns))
+    carried[:, 0] = np.eye(size, columns)
+    carried[:, 0, :, columns - 1 - begun.shape[2] : -1] = begun
+    carried[:, 1:, :, size:-1] = forced[at]
+    for k in each:
+        carried[:, k + 1] += A[at[:, k]] @ carried[:, k]
+    own = seen[at]
+    J = own[..., :size] @ carried[:, :-1]
+    J[..., size:] += own[..., size:]
+    J[~(known[at] & (each < lengths[:, None])[:, :, None])] = 0.0
+    J = J.reshape(len(at), -1, columns)
+    ends = carried[np.arange(len(at)), lengths]
+    shape = len(segments), -1
+    return (
+        (J.transpose(0, 2, 1) @ J).reshape(*shape, columns, columns),
+        ends.reshape(*shape, size, columns),
+    )
+
+
+def _whole(grams: Array, ends: Array, pieces: int, wanted: int) -> tuple[Array, Array]:
+    """J'J (segments, ...) and derivatives of the last states (segments, size, ...), by initial
+    states, wanted quantities and the inputs of all pieces, from those of the pieces."""
+    count, _, size, columns = ends.shape
+    own = columns - size - wanted - 1
+    width = size + wanted + pieces * own + 1
+    out = np.zeros((count, width, width))
+    state = np.zeros((count, pieces + 1, size, width))
+    state[:, 0] = np.eye(size, width)
+    half = np.zeros((count, pieces, size, width))
+    grams[:, :, :size, :size] /= 2
+    for k in range(pieces):
+        first = size + wanted + k * own
+        at = np.r_[size : size + wanted, first : first + own, width - 1]
+        for made, by in (state[:, k + 1], ends[:, k]), (half[:, k], grams[:, k, :size]):
+            made[:] = by[:, :, :size] @ state[:, k]
+            made[:, :, at] += by[:, :, size:]
+        out[:, at[:, None], at] += grams[:, k, size:, size:]
+    before = state[:, :-1].reshape(count, -1, width)
+    cross = before.transpose(0, 2, 1) @ half.reshape(count, -1, width)
+    return out + cross + cross.transpose(0, 2, 1), state[:, -1, :, :-1]
 
 
 def _widened(own: DriveSlopes) -> DriveSlopes:
