@@ -35,7 +35,7 @@ def test_its_column_is_that_of_the_effect(name):
     # Where the path is not what was recorded, the pushes are not those along it.
     data = model.runs[1]
     data.values[SEGMENT.span] = model.predicted(request, ())
-    along = observed(model, request, ())
+    (along,) = observed(model, [request], ())
     pushes = _pushes(name, along, model.nominal)[None]
     # Recordings that are off by a noise, so that the residual is seen too.
     data.values[:] += 0.5 * data.sigma * np.sin(np.arange(data.values.size)).reshape(-1, 4)

@@ -10,7 +10,7 @@ predicted robot would drive on.
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -80,20 +80,13 @@ class FloorMap:
 
         shares  of the moments on each patch (patches, 4 moments)
         """
-        parts = [
-            self._gains(shares[k : k + _AT_ONCE]) for k in range(0, max(len(shares), 1), _AT_ONCE)
-        ]
-        gain, multiplier = np.hstack(parts)
-        return gain, multiplier
-
-    def _gains(self, shares: Array) -> Array:
         own = shares.T.reshape(*self.bends.shape[:2], -1)
         onto = self.onto @ shares.T
         bend = (own * (self.bends @ own)).sum((0, 1)) - (onto * (self.inverse @ onto)).sum(0)
         slope = shares @ self.slope
         more = np.where(bend > 0, -slope / np.where(bend > 0, bend, 1.0), 0.0)
         more = np.clip(more, _LEAST - 1.0, _MOST - 1.0) * (bend > 0)
-        return np.array([-more * (2 * slope + bend * more), 1.0 + more])
+        return -more * (2 * slope + bend * more), 1.0 + more
 
 
 def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
@@ -102,7 +95,7 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     nq, given = len(problem.names), racer.simulator.given(values)
     k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
     requests = problem.requests(values, fit.states)
-    along = [observed(racer, one, fit.effects) for one in requests]
+    along = observed(racer, requests, fit.effects)
     count = max(min(min(one.t.size for one in along) // _SAMPLES, _MOMENTS), 1)
     size = requests[0].state.size
     scale = np.ones(size + nq + 4 * count + 1)
@@ -183,30 +176,35 @@ def likely(floor: FloorMap, shape: Shape) -> list[tuple[float, Mapping[str, floa
     grid = shape.grid(places)
     if not len(grid):
         return []
-    shares = np.array([floor.roughly(shape.depth(one)) for one in grid])
-    best = np.argsort(-floor.gains(shares)[0])
+
+    def roughly(one: Array) -> Array:
+        return floor.roughly(shape.depth(one))
+
+    some = np.split(grid, range(_AT_ONCE, len(grid), _AT_ONCE))
+    gains = np.concatenate([floor.gains(np.array([*map(roughly, part)]))[0] for part in some])
+    best = grid[np.argsort(-gains)]
     size = float(np.ptp(places, axis=1).max()) / _PLACES
-    moved = [_moved(floor, shape, grid[k], size) for k in _unlike(shares, best, _SEEDS)]
+    moved = [_moved(floor, shape, best[k], size) for k in _unlike(map(roughly, best), _SEEDS)]
     shares = np.array([floor.at(shape.depth(one)) for one in moved])
     gains, multipliers = floor.gains(shares)
-    middle = places.mean(axis=1)
+    order, middle = np.argsort(-gains), places.mean(axis=1)
     return [
         (float(gains[k]), {"multiplier": float(multipliers[k]), **shape.values(moved[k], middle)})
-        for k in _unlike(shares, np.argsort(-gains), _BEST)
+        for k in order[_unlike(shares[order], _BEST)]
     ]
 
 
-def _unlike(shares: Array, order: NDArray[np.intp], most: int) -> list[int]:
-    """The first few in order, skipping any that resembles an earlier one."""
-    found: list[int] = []
-    length = np.linalg.norm(shares, axis=1)
-    for k in order:
-        alike = (shares[found] @ shares[k]) > _ALIKE * length[found] * length[k]
-        if length[k] > 0 and not alike.any():
-            found.append(int(k))
+def _unlike(patches: Iterable[Array], most: int) -> list[int]:
+    """The first few of the patches, by their shares, skipping any that resembles an earlier one."""
+    found: dict[int, Array] = {}
+    for k, shares in enumerate(patches):
+        length = np.linalg.norm(shares)
+        one = shares / (length or 1.0)
+        if length > 0 and all(one @ other <= _ALIKE for other in found.values()):
+            found[k] = one
         if len(found) == most:
             break
-    return found
+    return [*found]
 
 
 def _moved(floor: FloorMap, shape: Shape, one: Array, size: float) -> Array:

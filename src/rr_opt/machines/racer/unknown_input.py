@@ -402,8 +402,7 @@ def unknown_terms(
     sizes = np.array([drag] * 4 + [_SIDE_SIZE * racer.setting.speed] * 2 + [_ANGLE_SIZE])
     usual = max(racer.setting.speed, 1e-6)
     requests, every, terms = fit.problem.requests(fit.values, fit.states), [], []
-    for request in requests:
-        along = observed(racer, request, fit.effects)
+    for request, along in zip(requests, observed(racer, requests, fit.effects), strict=True):
         gait = racer.experiment.runs[request.segment.run].gait
         moving = _Moving(along, 2 * math.pi * along.t / gait.period, usual)
         terms, columns = _terms(moving, sizes)
