@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import NamedTuple
+from itertools import islice
 
 import casadi as ca
 import numpy as np
@@ -130,25 +130,24 @@ def linearised_inputs(
         )
         made = Path(predicted.states[:, ::each], predicted.seen)
         t = racer.runs[segment.run].t[segment.span]
-        drives = _drives(pushes, t)
+        drives = pushes, t
         moments = _moments(path, t)
-        plain = _with_drives(path, np.zeros(drives.shape[1:]), moments)
+        plain = _with_drives(path, np.zeros((len(DRIVES), t.size)), moments)
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
         every.append(drives)
         own = own and _widened(DriveSlopes(own.at, _sampled(own.nodes, each), own.columns))
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
-    recorded = [simulator.recorded(one.segment) for one in requests]
-    seen = [
-        _seen(how, drives, one.weight, one.off(part.made.seen), pieces)
-        for how, drives, one, part in zip(
-            linear(system, parts, p, by), every, recorded, parts, strict=True
-        )
-    ]
-    some = max(_COLUMNS_AT_ONCE // seen[0].seen.shape[2], 1)
-    for first in range(0, len(seen), some):
-        grams, ends = _whole(*_carried(seen[first : first + some]), pieces, len(by.T))
-        yield from map(Linearisation, grams, ends)
+    motions = zip(requests, parts, every, linear(system, parts, p, by), strict=True)
+    columns = requests[0].state.size + len(wanted) + len(inputs[0]) + 1
+    while some := [*islice(motions, max(_COLUMNS_AT_ONCE // columns, 1))]:
+        pushed = [_with_inputs(how, _drives(*drives), pieces) for *_, drives, how in some]
+        made = []
+        for (request, part, *_), (how, _), own in zip(some, pushed, _carried(pushed), strict=True):
+            recorded = simulator.recorded(request.segment)
+            made.append(_linearised(how, own, recorded.weight, recorded.off(part.made.seen)))
+        grams, ends = map(np.array, zip(*made, strict=True))
+        yield from map(Linearisation, *_whole(grams, ends, len(wanted)))
 
 
 _COLUMNS_AT_ONCE = 1000
@@ -160,84 +159,69 @@ def cut(samples: int, pieces: int) -> NDArray[np.int_]:
     return np.linspace(0, samples, pieces + 1).astype(int)
 
 
-class _Seen(NamedTuple):
-    """A segment sample by sample. Columns are the wanted quantities and the inputs; where it says
-    `all`, the state before them and the residual after them.
-
-    A (n, size, size) and forced (n, size, columns)  to the next sample; none follows the last
-    begun    (pieces, size, k) what its inputs have done by the first sample of a piece
-    seen     (n, channels, all) direct derivatives of the outputs, in sigmas
-    known    (n, channels) where there are data
-    lengths  (pieces,) in samples
-    """
-
-    A: Array
-    forced: Array
-    begun: Array
-    seen: Array
-    known: NDArray[np.bool_]
-    lengths: NDArray[np.int_]
-
-
-def _seen(how: LinearMotion, drives: Array, weight: Array, off: Array, pieces: int) -> _Seen:
-    """With inputs as DRIVES (k, 10, n)."""
-    (n, _, size), wanted = how.by_state.shape, how.by_wanted.shape[2]
-    edges = cut(n, pieces)
+def _with_inputs(how: LinearMotion, drives: Array, pieces: int) -> tuple[LinearMotion, Array]:
+    """The motion with inputs as DRIVES (k, 10, n) among the wanted quantities; and what those of a
+    piece have done by its first sample (pieces, size, k)."""
+    wanted = how.by_wanted.shape[2]
     at = np.ascontiguousarray(drives.transpose(2, 1, 0))
     earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
-    forced = np.zeros((n, size, wanted + len(drives)))
-    forced[:-1, :, :wanted] = how.B[:, :, :wanted]
-    forced[:-1, :, wanted:] = late = later @ at[1:]
-    # The input of a piece's first sample sets in before it.
-    begun = np.concatenate([np.zeros((1, *late.shape[1:])), late[edges[1:-1] - 1]])
-    forced[edges[1:-1] - 1, :, wanted:] = 0.0
-    forced[:-1, :, wanted:] += earlier @ at[:-1]
+    late = later @ at[1:]
+    before = cut(len(at), pieces)[1:-1] - 1
+    begun = np.concatenate([np.zeros((1, *late.shape[1:])), late[before]])
+    late[before] = 0.0
+    B = np.concatenate([how.B[:, :, :wanted], earlier @ at[:-1] + late], axis=2)
     direct = how.by_drive[:, :, [*range(-FURTHER, 0), 0, 1]] @ at
-    by = np.concatenate([how.by_state, how.by_wanted, direct], axis=2) * weight[:, :, None]
-    return _Seen(
-        np.concatenate([how.A, np.eye(size)[None]]),
-        forced,
-        begun,
-        np.concatenate([by, off[:, :, None]], axis=2),
-        weight > 0,
-        np.diff(edges),
-    )
+    by_wanted = np.concatenate([how.by_wanted, direct], axis=2)
+    return replace(how, B=B, by_wanted=by_wanted), begun
 
 
-def _carried(segments: Sequence[_Seen]) -> tuple[Array, Array]:
-    """J'J (segments, pieces, all, all) of pieces, by the state at their beginning and the columns;
-    and derivatives of the state at their end (segments, pieces, size, all).
-
-    All pieces, side by side, are padded to the same length.
-    """
-    A, forced, begun, seen, known, lengths = map(np.concatenate, zip(*segments, strict=True))
-    longest = int(lengths.max())
-    each = np.arange(longest)
-    at = np.minimum((np.cumsum(lengths) - lengths)[:, None] + each, len(A) - 1)
-    size, columns = A.shape[1], seen.shape[2]
-    carried = np.zeros((len(at), longest + 1, size, columns))
-    carried[:, 0] = np.eye(size, columns)
-    carried[:, 0, :, columns - 1 - begun.shape[2] : -1] = begun
-    carried[:, 1:, :, size:-1] = forced[at]
-    for k in each:
-        carried[:, k + 1] += A[at[:, k]] @ carried[:, k]
-    own = seen[at]
-    J = own[..., :size] @ carried[:, :-1]
-    J[..., size:] += own[..., size:]
-    J[~(known[at] & (each < lengths[:, None])[:, :, None])] = 0.0
-    J = J.reshape(len(at), -1, columns)
-    ends = carried[np.arange(len(at)), lengths]
-    shape = len(segments), -1
-    return (
-        (J.transpose(0, 2, 1) @ J).reshape(*shape, columns, columns),
-        ends.reshape(*shape, size, columns),
-    )
+def _carried(pushed: Sequence[tuple[LinearMotion, Array]]) -> Array:
+    """Derivatives of the state from the first sample of a piece to that of the next (segments,
+    pieces, samples + 1, size, ...), by its state at the first, wanted quantities, its inputs, and
+    the residual. All pieces, side by side, are padded to the same length."""
+    pieces, size, k = pushed[0][1].shape
+    most = max(int(np.diff(cut(len(how.by_state), pieces)).max()) for how, _ in pushed)
+    columns = size + pushed[0][0].B.shape[2] + 1
+    A = np.empty((len(pushed), pieces, most, size, size))
+    out = np.zeros((len(pushed), pieces, most + 1, size, columns))
+    out[:, :, 0] = np.eye(size, columns)
+    for (how, begun), a, own in zip(pushed, A, out, strict=True):
+        at = np.minimum(_samples(len(how.by_state), pieces, most), len(how.A) - 1)
+        a[:] = how.A[at]
+        own[:, 0, :, -1 - k : -1] = begun
+        own[:, 1:, :, size:-1] = how.B[at]
+    for step in range(most):
+        out[:, :, step + 1] += A[:, :, step] @ out[:, :, step]
+    return out
 
 
-def _whole(grams: Array, ends: Array, pieces: int, wanted: int) -> tuple[Array, Array]:
+def _samples(samples: int, pieces: int, most: int) -> NDArray[np.int_]:
+    """The samples of each piece (pieces, most), and further ones if it has fewer."""
+    return np.minimum(cut(samples, pieces)[:-1, None] + np.arange(most), samples - 1)
+
+
+def _linearised(
+    how: LinearMotion, carried: Array, weight: Array, off: Array
+) -> tuple[Array, Array]:
+    """J'J of a segment's pieces (pieces, ...), and derivatives of the state after each (pieces,
+    size, ...), by the state at its first sample, wanted quantities, its inputs, the residual."""
+    pieces, most, size, columns = carried.shape
+    lengths = np.diff(cut(len(weight), pieces))
+    at = _samples(len(weight), pieces, most - 1)
+    J = (how.by_state * weight[:, :, None])[at] @ carried[:, :-1]
+    J[..., size:-1] += (how.by_wanted * weight[:, :, None])[at]
+    J[..., -1] = off[at]
+    beyond = np.arange(most - 1) >= lengths[:, None]
+    J[(weight[at] == 0) | beyond[:, :, None]] = 0.0
+    J = J.reshape(pieces, -1, columns)
+    lengths[-1] -= 1  # Nothing follows the last sample.
+    return J.transpose(0, 2, 1) @ J, carried[range(pieces), lengths]
+
+
+def _whole(grams: Array, ends: Array, wanted: int) -> tuple[Array, Array]:
     """J'J (segments, ...) and derivatives of the last states (segments, size, ...), by initial
     states, wanted quantities and the inputs of all pieces, from those of the pieces."""
-    count, _, size, columns = ends.shape
+    count, pieces, size, columns = ends.shape
     own = columns - size - wanted - 1
     width = size + wanted + pieces * own + 1
     out = np.zeros((count, width, width))
@@ -415,13 +399,16 @@ def _terms(moving: _Moving, sizes: Array) -> tuple[list[Term], Array]:
     """Of every channel and variable, and their inputs along a path (columns, 7, n)."""
     terms: list[Term] = []
     columns: list[Array] = []
+    along = {
+        name: [f(variable.of(moving), moving) for f in variable.functions]
+        for name, variable in _VARIABLES.items()
+    }
     for channel, pushes in CHANNELS.items():
         shape = sizes * np.array(pushes)
         size = float(np.abs(shape).max())
         for name, variable in _VARIABLES.items():
-            first, x = len(columns), variable.of(moving)
-            columns += [shape[:, None] * f(x, moving) for f in variable.functions]
-            own = tuple(range(first, len(columns)))
+            own = tuple(range(len(columns), len(columns) + len(along[name])))
+            columns += [shape[:, None] * each for each in along[name]]
             # A plotted curve depends on the variable alone, so the path does not matter.
             alone = np.zeros((0, len(own)))
             if variable.grid.size:
