@@ -111,7 +111,8 @@ def linearised_inputs(
     wanted quantities and the inputs.
 
     inputs  (k, 7, n) of each segment, rows as PUSHES
-    pieces  into which a segment is cut: inputs act in one of them each, a piece's k side by side
+    pieces  into which a segment is cut: inputs act in one of them each, a piece's k side by side;
+            their rates of change are those of the inputs before the cut
 
     One step from sample to sample is fine enough for the response to a push.
     """
