@@ -48,14 +48,14 @@ class FloorMap:
 
     places   of the wheels (2, 4, n), m;  begins  the sample in which each moment begins (moments,)
     slope    (4 moments,), gradient by shares of drag, everything else fitted
-    bends    (segments, k, k) second derivatives, k = 4 moments of a segment; refitting the
-             parameters reduces them by onto' inverse onto, with `onto` (nq, 4 moments)
+    roots    (segments, r, 4 moments of a segment): roots' roots are second derivatives; refitting
+             the parameters reduces them by onto' inverse onto, with `onto` (nq, 4 moments)
     """
 
     places: Array
     begins: NDArray[np.int_]
     slope: Array
-    bends: Array
+    roots: Array
     onto: Array
     inverse: Array
 
@@ -80,9 +80,9 @@ class FloorMap:
 
         shares  of the moments on each patch (patches, 4 moments)
         """
-        own = shares.T.reshape(*self.bends.shape[:2], -1)
+        bent = self.roots @ shares.T.reshape(len(self.roots), -1, len(shares))
         onto = self.onto @ shares.T
-        bend = (own * (self.bends @ own)).sum((0, 1)) - (onto * (self.inverse @ onto)).sum(0)
+        bend = (bent**2).sum((0, 1)) - (onto * (self.inverse @ onto)).sum(0)
         slope = shares @ self.slope
         more = np.where(bend > 0, -slope / np.where(bend > 0, bend, 1.0), 0.0)
         more = np.clip(more, _LEAST - 1.0, _MOST - 1.0) * (bend > 0)
@@ -126,10 +126,19 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
         np.concatenate([one.places.transpose(1, 0, 2) for one in along], axis=2),
         np.concatenate(begins),
         np.concatenate(slopes) - across.T @ (inverse @ g),
-        np.array(bends),
+        _roots(np.array(bends)),
         across,
         inverse,
     )
+
+
+def _roots(squares: Array) -> Array:
+    """(segments, r, k): roots' roots are the squares (segments, k, k), but for rounding. r is less
+    than k, since wheels that are braked in the same moment do much the same."""
+    value, vector = np.linalg.eigh(squares)
+    some = (value > 1e-13 * value.max()).any(axis=0)
+    roots = np.sqrt(np.maximum(value, 0.0))[:, None] * vector
+    return np.ascontiguousarray(roots[:, :, some].swapaxes(1, 2))
 
 
 def _pushes(along: Along, k: Array) -> Array:

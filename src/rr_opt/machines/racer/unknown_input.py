@@ -140,8 +140,8 @@ def linearised_inputs(
         own = own and _widened(DriveSlopes(own.at, _sampled(own.nodes, each), own.columns))
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
     motions = zip(requests, parts, every, linear(system, parts, p, by), strict=True)
-    columns = requests[0].state.size + len(wanted) + len(inputs[0]) + 1
-    while some := [*islice(motions, max(_COLUMNS_AT_ONCE // columns, 1))]:
+    columns = len(wanted) + pieces * len(inputs[0])
+    while some := [*islice(motions, max(_COLUMNS_AT_ONCE // max(columns, 1), 1))]:
         pushed = [_with_inputs(how, _drives(*drives), pieces) for *_, drives, how in some]
         made = []
         for (request, part, *_), (how, _), own in zip(some, pushed, _carried(pushed), strict=True):
@@ -239,7 +239,9 @@ def _whole(grams: Array, ends: Array, wanted: int) -> tuple[Array, Array]:
         out[:, at[:, None], at] += grams[:, k, size:, size:]
     before = state[:, :-1].reshape(count, -1, width)
     cross = before.transpose(0, 2, 1) @ half.reshape(count, -1, width)
-    return out + cross + cross.transpose(0, 2, 1), state[:, -1, :, :-1]
+    out += cross
+    out += cross.transpose(0, 2, 1)
+    return out, state[:, -1, :, :-1]
 
 
 def _widened(own: DriveSlopes) -> DriveSlopes:
