@@ -228,6 +228,7 @@ def _whole(grams: Array, ends: Array, wanted: int) -> tuple[Array, Array]:
     out = np.zeros((count, width, width))
     state = np.zeros((count, pieces + 1, size, width))
     state[:, 0] = np.eye(size, width)
+    # Of what is quadratic in the states at the beginnings, half: it comes back as the transpose.
     half = np.zeros((count, pieces, size, width))
     grams[:, :, :size, :size] /= 2
     for k in range(pieces):
