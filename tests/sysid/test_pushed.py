@@ -1,10 +1,12 @@
 """A push as a function of time moves the robot as the effect does that pushes so."""
 
+import itertools
+
 import numpy as np
 import pytest
 
 from rr_opt.machines.racer.observed import observed
-from rr_opt.machines.racer.unknown_input import linearised_inputs
+from rr_opt.machines.racer.unknown_input import cut, linearised_inputs
 from rr_opt.sysid.model import Request, Segment
 from tests.sysid.made_up import with_effect
 
@@ -35,7 +37,7 @@ def test_its_column_is_that_of_the_effect(name):
     # Where the path is not what was recorded, the pushes are not those along it.
     data = model.runs[1]
     data.values[SEGMENT.span] = model.predicted(request, ())
-    along = observed(model, request, ())
+    (along,) = observed(model, [request], ())
     pushes = _pushes(name, along, model.nominal)[None]
     # Recordings that are off by a noise, so that the residual is seen too.
     data.values[:] += 0.5 * data.sigma * np.sin(np.arange(data.values.size)).reshape(-1, 4)
@@ -60,3 +62,29 @@ def test_where_nothing_is_wanted_it_is_the_plain_linearisation():
     size = np.sqrt(np.diag(linear.gram))
     assert (gram - linear.gram) / np.outer(size, size) == pytest.approx(0.0, abs=1e-3)
     assert end == pytest.approx(linear.end, abs=1e-3 * np.abs(linear.end).max())
+
+
+def test_the_inputs_of_pieces_are_those_of_the_whole_that_are_zero_elsewhere():
+    model = with_effect({}, ())
+    segments = [Segment(1, 0, 300, 299), Segment(1, 100, 250, 249)]
+    requests = [Request(one, {}, model.initial_state(one, (), {})) for one in segments]
+    along = observed(model, requests, ())
+    whole, short = [], []
+    for one in along:
+        pushes = np.random.default_rng(0).normal(size=(2, 7, one.t.size))
+        pushes[:, 4:] = 0.0  # Rates of change are those of an input that is not cut.
+        edges = cut(one.t.size, 7)
+        inside = np.zeros((7, one.t.size))
+        for piece, (first, last) in zip(inside, itertools.pairwise(edges), strict=True):
+            piece[first:last] = 1.0
+        short.append(pushes)
+        whole.append((inside[:, None, None] * pushes).reshape(-1, 7, one.t.size))
+    names = ("m1", "kappa2")
+    expected = linearised_inputs(model, requests, (), names, whole)
+    cut_up = linearised_inputs(model, requests, (), names, short, 7)
+    for one, other in zip(cut_up, expected, strict=True):
+        size = np.sqrt(np.diag(other.gram))
+        assert one.gram / np.outer(size, size) == pytest.approx(
+            other.gram / np.outer(size, size), abs=1e-9
+        )
+        assert one.end == pytest.approx(other.end, abs=1e-9 * np.abs(other.end).max())

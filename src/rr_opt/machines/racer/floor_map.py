@@ -10,8 +10,9 @@ predicted robot would drive on.
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from rr_opt.array import Array
 from rr_opt.effects.floor_patch import BORDER
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.observed import Along, observed
-from rr_opt.machines.racer.unknown_input import PUSHES, linearised_inputs
+from rr_opt.machines.racer.unknown_input import PUSHES, cut, linearised_inputs
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.settings import SETTINGS
 
@@ -47,52 +48,45 @@ class FloorMap:
 
     places   of the wheels (2, 4, n), m;  begins  the sample in which each moment begins (moments,)
     slope    (4 moments,), gradient by shares of drag, everything else fitted
-    bends    second derivatives of each segment; refitting the parameters reduces them by
-             onto' inverse onto, with `onto` (nq, 4 moments)
+    roots    (segments, r, 4 moments of a segment): roots' roots are second derivatives; refitting
+             the parameters reduces them by onto' inverse onto, with `onto` (nq, 4 moments)
     """
 
     places: Array
     begins: NDArray[np.int_]
     slope: Array
-    bends: Sequence[Array]
+    roots: Array
     onto: Array
     inverse: Array
 
     def at(self, depth: Depth) -> Array:
         """The share of each moment for which each wheel is on a patch (4 moments,)."""
-        inside = _inside(depth(*self.places))
+        inside = np.tanh(depth(*self.places) / BORDER)
         whole = np.add.reduceat(inside, self.begins, axis=1)
-        lengths = np.diff(np.append(self.begins, inside.shape[1]))
-        return (whole / lengths).T.ravel()
+        return (1 + whole / np.diff(self.begins, append=inside.shape[1])).T.ravel() / 2
 
     def roughly(self, depth: Depth) -> Array:
         """The same, from the wheels' places in the middle of the moments."""
+        return (1 + np.tanh(depth(*self._middles) / BORDER)) / 2
+
+    @cached_property
+    def _middles(self) -> Array:
+        """The wheels' places in the middle of the moments (2, 4 moments)."""
         ends = np.append(self.begins[1:], self.places.shape[2])
-        return _inside(depth(*self.places[:, :, (self.begins + ends) // 2])).T.ravel()
+        return self.places[:, :, (self.begins + ends) // 2].transpose(0, 2, 1).reshape(2, -1)
 
     def gains(self, shares: Array) -> tuple[Array, Array]:
         """Gains of patches in chi-square, each at its best multiplier, and that; (patches,).
 
         shares  of the moments on each patch (patches, 4 moments)
         """
-        parts = [
-            self._gains(shares[k : k + _AT_ONCE]) for k in range(0, max(len(shares), 1), _AT_ONCE)
-        ]
-        gain, multiplier = np.hstack(parts)
-        return gain, multiplier
-
-    def _gains(self, shares: Array) -> Array:
-        bend, at = np.zeros(len(shares)), 0
-        for H in self.bends:
-            own = shares[:, at : at + len(H)]
-            bend += np.einsum("ij,ij->i", own @ H, own)
-            at += len(H)
-        onto = shares @ self.onto.T
-        bend -= np.einsum("ij,jk,ik->i", onto, self.inverse, onto)
+        bent = self.roots @ shares.T.reshape(len(self.roots), -1, len(shares))
+        onto = self.onto @ shares.T
+        bend = (bent**2).sum((0, 1)) - (onto * (self.inverse @ onto)).sum(0)
         slope = shares @ self.slope
         more = np.where(bend > 0, -slope / np.where(bend > 0, bend, 1.0), 0.0)
         more = np.clip(more, _LEAST - 1.0, _MOST - 1.0) * (bend > 0)
-        return np.array([-more * (2 * slope + bend * more), 1.0 + more])
+        return -more * (2 * slope + bend * more), 1.0 + more
 
 
 def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
@@ -101,15 +95,15 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     nq, given = len(problem.names), racer.simulator.given(values)
     k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
     requests = problem.requests(values, fit.states)
-    along = [observed(racer, one, fit.effects) for one in requests]
+    along = observed(racer, requests, fit.effects)
     count = max(min(min(one.t.size for one in along) // _SAMPLES, _MOMENTS), 1)
     size = requests[0].state.size
     scale = np.ones(size + nq + 4 * count + 1)
     scale[size : size + nq] = problem.scale
     bends, onto, slopes = [], [], []
     shared, g = np.diag(problem.prior), problem.prior * fit.u
-    pushes = [_pushes(seen, k, count) for seen in along]
-    linear = linearised_inputs(racer, requests, fit.effects, problem.names, pushes)
+    pushes = [_pushes(seen, k) for seen in along]
+    linear = linearised_inputs(racer, requests, fit.effects, problem.names, pushes, count)
     for one, part in zip(requests, linear, strict=True):
         evidence = fit.evidences[one.segment.run]
         weight = 1 / (1 + max(evidence.excess, 0) / problem.correlation_times(one.segment.run))
@@ -127,34 +121,31 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     across = np.hstack(onto)
     sizes = [one.t.size for one in along]
     firsts = np.cumsum([0, *sizes[:-1]])
-    begins = [first + _edges(n, count)[:-1] for first, n in zip(firsts, sizes, strict=True)]
+    begins = [first + cut(n, count)[:-1] for first, n in zip(firsts, sizes, strict=True)]
     return FloorMap(
         np.concatenate([one.places.transpose(1, 0, 2) for one in along], axis=2),
         np.concatenate(begins),
         np.concatenate(slopes) - across.T @ (inverse @ g),
-        bends,
+        _roots(np.array(bends)),
         across,
         inverse,
     )
 
 
-def _pushes(along: Along, k: Array, count: int) -> Array:
-    """(4 count, 7, n): each wheel's drag, N, in each moment, as on the rest of the floor."""
-    edges = _edges(along.t.size, count)
-    out = np.zeros((count, 4, len(PUSHES), along.t.size))
-    for moment in range(count):
-        during = slice(edges[moment], edges[moment + 1])
-        for wheel in range(4):
-            out[moment, wheel, wheel, during] = -k[wheel] * along.u[wheel, during]
-    return out.reshape(4 * count, len(PUSHES), along.t.size)
+def _roots(squares: Array) -> Array:
+    """(segments, r, k): roots' roots are the squares (segments, k, k), but for rounding. r is less
+    than k, since wheels that are braked in the same moment do much the same."""
+    value, vector = np.linalg.eigh(squares)
+    some = (value > 1e-13 * value.max()).any(axis=0)
+    roots = np.sqrt(np.maximum(value, 0.0))[:, None] * vector
+    return np.ascontiguousarray(roots[:, :, some].swapaxes(1, 2))
 
 
-def _edges(samples: int, count: int) -> NDArray[np.int_]:
-    return np.linspace(0, samples, count + 1).astype(int)
-
-
-def _inside(depth: Array) -> Array:
-    return (1 + np.tanh(depth / BORDER)) / 2
+def _pushes(along: Along, k: Array) -> Array:
+    """Each wheel's drag, N, as on the rest of the floor (4, 7, n)."""
+    out = np.zeros((4, len(PUSHES), along.t.size))
+    out[range(4), range(4)] = -k[:, None] * along.u
+    return out
 
 
 _PLACES = 12
@@ -194,30 +185,35 @@ def likely(floor: FloorMap, shape: Shape) -> list[tuple[float, Mapping[str, floa
     grid = shape.grid(places)
     if not len(grid):
         return []
-    shares = np.array([floor.roughly(shape.depth(one)) for one in grid])
-    best = np.argsort(-floor.gains(shares)[0])
+
+    def roughly(one: Array) -> Array:
+        return floor.roughly(shape.depth(one))
+
+    some = np.split(grid, range(_AT_ONCE, len(grid), _AT_ONCE))
+    gains = np.concatenate([floor.gains(np.array([*map(roughly, part)]))[0] for part in some])
+    best = grid[np.argsort(-gains)]
     size = float(np.ptp(places, axis=1).max()) / _PLACES
-    moved = [_moved(floor, shape, grid[k], size) for k in _unlike(shares, best, _SEEDS)]
+    moved = [_moved(floor, shape, best[k], size) for k in _unlike(map(roughly, best), _SEEDS)]
     shares = np.array([floor.at(shape.depth(one)) for one in moved])
     gains, multipliers = floor.gains(shares)
-    middle = places.mean(axis=1)
+    order, middle = np.argsort(-gains), places.mean(axis=1)
     return [
         (float(gains[k]), {"multiplier": float(multipliers[k]), **shape.values(moved[k], middle)})
-        for k in _unlike(shares, np.argsort(-gains), _BEST)
+        for k in order[_unlike(shares[order], _BEST)]
     ]
 
 
-def _unlike(shares: Array, order: NDArray[np.intp], most: int) -> list[int]:
-    """The first few in order, skipping any that resembles an earlier one."""
-    found: list[int] = []
-    length = np.linalg.norm(shares, axis=1)
-    for k in order:
-        alike = (shares[found] @ shares[k]) > _ALIKE * length[found] * length[k]
-        if length[k] > 0 and not alike.any():
-            found.append(int(k))
+def _unlike(patches: Iterable[Array], most: int) -> list[int]:
+    """The first few of the patches, by their shares, skipping any that resembles an earlier one."""
+    found: dict[int, Array] = {}
+    for k, shares in enumerate(patches):
+        length = np.linalg.norm(shares)
+        one = shares / (length or 1.0)
+        if length > 0 and all(one @ other <= _ALIKE for other in found.values()):
+            found[k] = one
         if len(found) == most:
             break
-    return found
+    return [*found]
 
 
 def _moved(floor: FloorMap, shape: Shape, one: Array, size: float) -> Array:
@@ -263,7 +259,7 @@ def _edge_values(of: Array, middle: Array) -> Mapping[str, float]:
 
 
 ROUND = Shape(
-    depth=lambda of: lambda x, y: of[2] - np.hypot(x - of[0], y - of[1]),
+    depth=lambda of: lambda x, y: of[2] - np.sqrt((x - of[0]) ** 2 + (y - of[1]) ** 2),
     grid=_circles,
     values=lambda of, _: {"x": float(of[0]), "y": float(of[1]), "radius": float(of[2])},
 )

@@ -1,5 +1,6 @@
 """The recorded motion of a Roller Racer: where its wheels went, and how fast."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -11,7 +12,8 @@ from rr_opt.array import Array
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.simulation import driven
 from rr_opt.motion.dynamics import assembled
-from rr_opt.sysid.model import Request
+from rr_opt.sysid.model import Request, Segment
+from rr_opt.sysid.shooting import DrivePath, Path
 
 _WINDOW = 0.5
 """The prediction's error changes little over this time, s."""
@@ -46,14 +48,29 @@ class Along:
         return (self.u[::2] + self.u[1::2]) / 2
 
 
-def observed(racer: RacerModel, request: Request, effects: tuple[str, ...]) -> Along:
+def observed(
+    racer: RacerModel, requests: Sequence[Request], effects: tuple[str, ...]
+) -> list[Along]:
     """The recorded motion: the prediction plus the smooth part of its error."""
-    simulator, segment = racer.simulator, request.segment
-    mechanical = simulator.every(effects)
+    predicted = racer.simulator.paths(requests, effects)
+    return [
+        _observed(racer, one.segment, effects, *path[:3])
+        for one, path in zip(requests, predicted, strict=True)
+    ]
+
+
+def _observed(
+    racer: RacerModel,
+    segment: Segment,
+    effects: tuple[str, ...],
+    path: DrivePath,
+    made: Path,
+    p: Array,
+) -> Along:
+    mechanical = racer.simulator.every(effects)
     _, motion = driven(mechanical)
     data = racer.runs[segment.run]
     t = data.t[segment.span]
-    ((path, made, p, _),) = simulator.paths([request], effects)
     pose, rate = _smooth(t, made.seen[:, :3], data.values[segment.span, :3])
     states = made.states[:, :: path.each]
     _, s1, s2, w = np.array(motion.speeds.map(t.size)(states, path.at, p))

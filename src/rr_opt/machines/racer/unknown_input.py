@@ -13,9 +13,11 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import islice
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.machines.racer.model import RacerModel
@@ -29,7 +31,7 @@ from rr_opt.motion.floor_motion import FloorMotion, solved
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Request, Segment
-from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, gram_of, linear
+from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, linear
 from rr_opt.sysid.shooting import DrivePath, Path, System
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
@@ -103,11 +105,14 @@ def linearised_inputs(
     effects: tuple[str, ...],
     wanted: tuple[str, ...],
     inputs: Sequence[Array],
+    pieces: int = 1,
 ) -> Iterator[Linearisation]:
     """Segments, all with the same values, linearised about zero inputs: in the initial state, the
     wanted quantities and the inputs.
 
     inputs  (k, 7, n) of each segment, rows as PUSHES
+    pieces  into which a segment is cut: inputs act in one of them each, a piece's k side by side;
+            their rates of change are those of the inputs before the cut
 
     One step from sample to sample is fine enough for the response to a push.
     """
@@ -126,72 +131,118 @@ def linearised_inputs(
         )
         made = Path(predicted.states[:, ::each], predicted.seen)
         t = racer.runs[segment.run].t[segment.span]
-        drives = _drives(pushes, t)
+        drives = pushes, t
         moments = _moments(path, t)
-        plain = _with_drives(path, np.zeros(drives.shape[1:]), moments)
+        plain = _with_drives(path, np.zeros((len(DRIVES), t.size)), moments)
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
         every.append(drives)
         own = own and _widened(own, each)
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
-    how = [*linear(system, parts, p, by)]
-    for request, part, (seen, end) in zip(requests, parts, _carried(how, every), strict=True):
-        recorded = simulator.recorded(request.segment)
-        weight = recorded.weight.ravel()
-        columns = (seen.reshape(weight.size, -1) * weight[:, None])[weight > 0]
-        residual = recorded.off(part.made.seen).ravel()[weight > 0]
-        yield Linearisation(gram_of(columns, residual), end)
+    motions = zip(requests, parts, every, linear(system, parts, p, by), strict=True)
+    columns = len(wanted) + pieces * len(inputs[0])
+    while some := [*islice(motions, max(_COLUMNS_AT_ONCE // max(columns, 1), 1))]:
+        pushed = [_with_inputs(how, _drives(*drives), pieces) for *_, drives, how in some]
+        made = []
+        for (request, part, *_), (how, _), own in zip(some, pushed, _carried(pushed), strict=True):
+            recorded = simulator.recorded(request.segment)
+            made.append(_linearised(how, own, recorded.weight, recorded.off(part.made.seen)))
+        grams, ends = map(np.array, zip(*made, strict=True))
+        yield from map(Linearisation, *_whole(grams, ends, len(wanted)))
 
 
 _COLUMNS_AT_ONCE = 1000
 """Columns of segments side by side, to bound the memory."""
 
 
-def _carried(
-    every: Sequence[LinearMotion], drives: Sequence[Array]
-) -> Iterator[tuple[Array, Array]]:
-    """Derivatives of segments' outputs, (n, channels, ...), and of their last states, by initial
-    state, wanted quantities, and pushes with DRIVES (k, 10, n).
-
-    Segments, a few of them side by side, are padded to the same length.
-    """
-    some = max(_COLUMNS_AT_ONCE // max(len(drives[0]), 1), 1)
-    for first in range(0, len(every), some):
-        parts = [
-            (one, *_forced(one, d))
-            for one, d in zip(
-                every[first : first + some], drives[first : first + some], strict=True
-            )
-        ]
-        size, columns = parts[0][1].shape[1:]
-        longest = max(len(one.A) for one, *_ in parts)
-        A = np.zeros((longest, len(parts), size, size))
-        carried = np.zeros((longest + 1, len(parts), size, size + columns))
-        carried[0] = np.eye(size, size + columns)
-        for k, (one, forced, _) in enumerate(parts):
-            A[: len(one.A), k] = one.A
-            carried[1 : len(one.A) + 1, k, :, size:] = forced
-        for k in range(longest):
-            carried[k + 1] += A[k] @ carried[k]
-        for k, (one, _, direct) in enumerate(parts):
-            own = carried[: len(one.A) + 1, k]
-            seen = one.by_state @ own
-            seen[:, :, size:] += direct
-            yield seen, own[-1]
+def cut(samples: int, pieces: int) -> NDArray[np.int_]:
+    """The samples with which equal pieces of a segment begin, and its end (pieces + 1,)."""
+    return np.linspace(0, samples, pieces + 1).astype(int)
 
 
-def _forced(how: LinearMotion, drives: Array) -> tuple[Array, Array]:
-    """What wanted quantities and pushes with DRIVES (k, 10, n) add to the state from sample to
-    sample (n - 1, size, ...), and to the outputs at the samples (n, channels, ...)."""
+def _with_inputs(how: LinearMotion, drives: Array, pieces: int) -> tuple[LinearMotion, Array]:
+    """The motion with inputs as DRIVES (k, 10, n) among the wanted quantities; and what those of a
+    piece have done by its first sample (pieces, size, k)."""
     wanted = how.by_wanted.shape[2]
     at = np.ascontiguousarray(drives.transpose(2, 1, 0))
     earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
-    pushed = earlier @ at[:-1] + later @ at[1:]
-    rows = [*range(-FURTHER, 0), 0, 1]
-    return (
-        np.concatenate([how.B[:, :, :wanted], pushed], axis=2),
-        np.concatenate([how.by_wanted, how.by_drive[:, :, rows] @ at], axis=2),
-    )
+    late = later @ at[1:]
+    before = cut(len(at), pieces)[1:-1] - 1
+    begun = np.concatenate([np.zeros((1, *late.shape[1:])), late[before]])
+    late[before] = 0.0
+    B = np.concatenate([how.B[:, :, :wanted], earlier @ at[:-1] + late], axis=2)
+    direct = how.by_drive[:, :, [*range(-FURTHER, 0), 0, 1]] @ at
+    by_wanted = np.concatenate([how.by_wanted, direct], axis=2)
+    return replace(how, B=B, by_wanted=by_wanted), begun
+
+
+def _carried(pushed: Sequence[tuple[LinearMotion, Array]]) -> Array:
+    """Derivatives of the state from the first sample of a piece to that of the next (segments,
+    pieces, samples + 1, size, ...), by its state at the first, wanted quantities, its inputs, and
+    the residual. All pieces, side by side, are padded to the same length."""
+    pieces, size, k = pushed[0][1].shape
+    most = max(int(np.diff(cut(len(how.by_state), pieces)).max()) for how, _ in pushed)
+    columns = size + pushed[0][0].B.shape[2] + 1
+    A = np.empty((len(pushed), pieces, most, size, size))
+    out = np.zeros((len(pushed), pieces, most + 1, size, columns))
+    out[:, :, 0] = np.eye(size, columns)
+    for (how, begun), a, own in zip(pushed, A, out, strict=True):
+        at = np.minimum(_samples(len(how.by_state), pieces, most), len(how.A) - 1)
+        a[:] = how.A[at]
+        own[:, 0, :, -1 - k : -1] = begun
+        own[:, 1:, :, size:-1] = how.B[at]
+    for step in range(most):
+        out[:, :, step + 1] += A[:, :, step] @ out[:, :, step]
+    return out
+
+
+def _samples(samples: int, pieces: int, most: int) -> NDArray[np.int_]:
+    """The samples of each piece (pieces, most), and further ones if it has fewer."""
+    return np.minimum(cut(samples, pieces)[:-1, None] + np.arange(most), samples - 1)
+
+
+def _linearised(
+    how: LinearMotion, carried: Array, weight: Array, off: Array
+) -> tuple[Array, Array]:
+    """J'J of a segment's pieces (pieces, ...), and derivatives of the state after each (pieces,
+    size, ...), by the state at its first sample, wanted quantities, its inputs, the residual."""
+    pieces, most, size, columns = carried.shape
+    lengths = np.diff(cut(len(weight), pieces))
+    at = _samples(len(weight), pieces, most - 1)
+    J = (how.by_state * weight[:, :, None])[at] @ carried[:, :-1]
+    J[..., size:-1] += (how.by_wanted * weight[:, :, None])[at]
+    J[..., -1] = off[at]
+    beyond = np.arange(most - 1) >= lengths[:, None]
+    J[(weight[at] == 0) | beyond[:, :, None]] = 0.0
+    J = J.reshape(pieces, -1, columns)
+    lengths[-1] -= 1  # Nothing follows the last sample.
+    return J.transpose(0, 2, 1) @ J, carried[range(pieces), lengths]
+
+
+def _whole(grams: Array, ends: Array, wanted: int) -> tuple[Array, Array]:
+    """J'J (segments, ...) and derivatives of the last states (segments, size, ...), by initial
+    states, wanted quantities and the inputs of all pieces, from those of the pieces."""
+    count, pieces, size, columns = ends.shape
+    own = columns - size - wanted - 1
+    width = size + wanted + pieces * own + 1
+    out = np.zeros((count, width, width))
+    state = np.zeros((count, pieces + 1, size, width))
+    state[:, 0] = np.eye(size, width)
+    # Of what is quadratic in the states at the beginnings, half: it comes back as the transpose.
+    half = np.zeros((count, pieces, size, width))
+    grams[:, :, :size, :size] /= 2
+    for k in range(pieces):
+        first = size + wanted + k * own
+        at = np.r_[size : size + wanted, first : first + own, width - 1]
+        for made, by in (state[:, k + 1], ends[:, k]), (half[:, k], grams[:, k, :size]):
+            made[:] = by[:, :, :size] @ state[:, k]
+            made[:, :, at] += by[:, :, size:]
+        out[:, at[:, None], at] += grams[:, k, size:, size:]
+    before = state[:, :-1].reshape(count, -1, width)
+    cross = before.transpose(0, 2, 1) @ half.reshape(count, -1, width)
+    out += cross
+    out += cross.transpose(0, 2, 1)
+    return out, state[:, -1, :, :-1]
 
 
 def _widened(own: DriveSlopes, each: int) -> DriveSlopes:
@@ -340,8 +391,7 @@ def unknown_terms(
     sizes = np.array([drag] * 4 + [_SIDE_SIZE * racer.setting.speed] * 2 + [_ANGLE_SIZE])
     usual = max(racer.setting.speed, 1e-6)
     requests, every, terms = fit.problem.requests(fit.values, fit.states), [], []
-    for request in requests:
-        along = observed(racer, request, fit.effects)
+    for request, along in zip(requests, observed(racer, requests, fit.effects), strict=True):
         gait = racer.experiment.runs[request.segment.run].gait
         moving = _Moving(along, 2 * math.pi * along.t / gait.period, usual)
         terms, columns = _terms(moving, sizes)
@@ -354,13 +404,16 @@ def _terms(moving: _Moving, sizes: Array) -> tuple[list[Term], Array]:
     """Of every channel and variable, and their inputs along a path (columns, 7, n)."""
     terms: list[Term] = []
     columns: list[Array] = []
+    along = {
+        name: [f(variable.of(moving), moving) for f in variable.functions]
+        for name, variable in _VARIABLES.items()
+    }
     for channel, pushes in CHANNELS.items():
         shape = sizes * np.array(pushes)
         size = float(np.abs(shape).max())
         for name, variable in _VARIABLES.items():
-            first, x = len(columns), variable.of(moving)
-            columns += [shape[:, None] * f(x, moving) for f in variable.functions]
-            own = tuple(range(first, len(columns)))
+            own = tuple(range(len(columns), len(columns) + len(along[name])))
+            columns += [shape[:, None] * each for each in along[name]]
             # A plotted curve depends on the variable alone, so the path does not matter.
             alone = np.zeros((0, len(own)))
             if variable.grid.size:
