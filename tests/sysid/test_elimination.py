@@ -17,7 +17,7 @@ def test_as_by_brute_force(q, prior, least):
     values = {"a": 0.1, "b": 0.2}
     problem, states = initial(model, (), model.parameters, values, [0, 1])
     problem = replace(problem, q=q, robust=False)
-    found = solve(problem, values, states, 0).linear.evidence(1, q)
+    found = solve(problem, values, states, 0).linear.evidences(q)[1]
     r, J = stacked(problem, [1], states, values)
     own = J.shape[1] - 2
     X, Q = J[:, :own], J[:, own:]

@@ -28,12 +28,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import LinAlgError, cho_solve, cholesky, solve_triangular
 from scipy.optimize import lsq_linear
 
 from rr_opt.array import Array
@@ -281,64 +281,84 @@ class Linear:
         }
         return cls(problem, made, parts, states)
 
-    def evidence(self, run: int, q: float) -> Evidence:
-        """Evidence of a run with process noise of strength q."""
-        problem, parts = self.problem, self.problem.by_run[run]
-        model = problem.model
+    def evidences(self, q: float) -> dict[int, Evidence]:
+        """Evidences of all runs with process noise of strength q."""
+        runs = self.problem.by_run
+        return dict(zip(runs, self.each([(run, q) for run in runs]), strict=True))
+
+    def each(self, asked: Sequence[tuple[int, float]]) -> list[Evidence]:
+        """Evidence of each run with its strength of process noise; those of runs with as many
+        segments are worked out side by side."""
+        counts = [len(self.problem.by_run[run]) for run, _ in asked]
+        out: dict[int, Evidence] = {}
+        for count in set(counts):
+            alike = [k for k, own in enumerate(counts) if own == count]
+            out |= zip(alike, self._side_by_side([asked[k] for k in alike]), strict=True)
+        return [out[k] for k in range(len(asked))]
+
+    def _side_by_side(self, asked: Sequence[tuple[int, float]]) -> Iterator[Evidence]:
+        problem, model = self.problem, self.problem.model
         scale, known = model.state_scale(problem.effects), model.state_prior(problem.effects)
-        noise = problem.process_noise(run, q)
-        size, count, prior = scale.size, len(parts), 1 / known**2
-        grams, by, states, gaps = self._stacked[run]
+        noise = np.array([problem.process_noise(run, q) for run, q in asked])
+        grams, by, states, gaps = map(
+            np.stack, zip(*(self._stacked[run] for run, _ in asked), strict=True)
+        )
+        runs, count, size = states.shape
+        prior, own, each = 1 / known**2, size * count, np.arange(count)
         # Blocks of the states (S), of the quantities or other columns (H), and between (across).
-        nq, each, own = by.shape[2] - size, np.arange(count), size * count
-        S, g = np.zeros((count, size, count, size)), grams[:, :size, -1] + prior * states
-        S[each, :, each, :] = grams[:, :size, :size] + np.diag(prior)
-        across, H = grams[:, :size, size:-1].copy(), grams[:, size:-1, size:-1].sum(axis=0)
-        g_shared = grams[:, size:-1, -1].sum(axis=0)
-        value = float(grams[:, -1, -1].sum() + np.sum(prior * states**2))
+        S = np.zeros((runs, count, size, count, size))
+        S[:, each, :, each, :] = grams[:, :, :size, :size].swapaxes(0, 1) + np.diag(prior)
+        g = grams[:, :, :size, -1] + prior * states
+        across, H = grams[:, :, :size, size:-1].copy(), grams[:, :, size:-1, size:-1].sum(axis=1)
+        g_shared = grams[:, :, size:-1, -1].sum(axis=1)
+        value = grams[:, :, -1, -1].sum(axis=1) + np.sum(prior * states**2, axis=(1, 2))
         # Gaps between segments.
-        tight = noise**-2
-        pull = by.transpose(0, 2, 1) * tight
+        tight = noise[:, None] ** -2
+        pull = by.swapaxes(2, 3) * tight[:, None]
         both, towards = pull @ by, (pull @ gaps[..., None])[..., 0]
         before, after = each[:-1], each[1:]
-        S[before, :, before, :] += both[:, :size, :size]
-        S[after, :, after, :] += np.diag(tight)
-        S[before, :, after, :] -= pull[:, :size]
-        S[after, :, before, :] -= pull[:, :size].transpose(0, 2, 1)
-        across[:-1] += both[:, :size, size:]
-        across[1:] -= pull[:, size:].transpose(0, 2, 1)
-        H += both[:, size:, size:].sum(axis=0)
-        g[:-1] += towards[:, :size]
-        g[1:] -= tight * gaps
-        g_shared += towards[:, size:].sum(axis=0)
-        value += float(np.sum(tight * gaps**2))
-        n = problem.degrees[run]
-        if not (np.isfinite(S).all() and np.isfinite(H).all() and np.isfinite(value)):
-            return Evidence.diverged(n, own, nq)
+        S[:, before, :, before, :] += both[:, :, :size, :size].swapaxes(0, 1)
+        S[:, after, :, after, :] += tight[:, 0, None, :] * np.eye(size)
+        S[:, before, :, after, :] -= pull[:, :, :size].swapaxes(0, 1)
+        S[:, after, :, before, :] -= pull[:, :, :size].transpose(1, 0, 3, 2)
+        across[:, :-1] += both[:, :, :size, size:]
+        across[:, 1:] -= pull[:, :, size:].swapaxes(2, 3)
+        H += both[:, :, size:, size:].sum(axis=1)
+        g[:, :-1] += towards[:, :, :size]
+        g[:, 1:] -= tight * gaps
+        g_shared += towards[:, :, size:].sum(axis=1)
+        value += np.sum(tight * gaps**2, axis=(1, 2))
         # Scaled, as the states' units differ.
         units = np.tile(scale, count)
-        S = S.reshape(own, own) * units * units[:, None]
-        S[np.diag_indices(own)] += 1e-12 * np.trace(S) / own
-        factor = cho_factor(S, lower=True, check_finite=False)
-        across = units[:, None] * across.reshape(own, nq)
-        g_own = units * g.ravel()
-        follow = -cho_solve(factor, across, check_finite=False)
-        shift = -cho_solve(factor, g_own, check_finite=False)
-        misfit = value + float(g_own @ shift)
-        log = 2 * float(np.sum(np.log(np.diag(factor[0]))))
-        log += 2 * (count - 1) * float(np.sum(np.log(noise / scale)))
+        S = S.reshape(runs, own, own) * units * units[:, None]
+        sound = np.isfinite(value) & np.isfinite(S).all((1, 2)) & np.isfinite(H).all((1, 2))
+        S[~sound] = np.eye(own)
+        S += 1e-12 / own * np.trace(S, axis1=1, axis2=2)[:, None, None] * np.eye(own)
+        right = np.concatenate([across.reshape(runs, own, -1), g.reshape(runs, own, 1)], axis=2)
+        solved = -np.linalg.solve(S, units[:, None] * right)
+        diagonal = np.diagonal(np.linalg.cholesky(S), axis1=1, axis2=2)
+        log = 2 * np.sum(np.log(diagonal), axis=1)
+        log += 2 * (count - 1) * np.sum(np.log(noise / scale), axis=1)
         proper = np.isfinite(known)
         log += count * 2 * float(np.sum(np.log(known[proper] / scale[proper])))
-        excess, weight = misfit - n, 1.0
-        if problem.robust:
-            weight = 1 / (1 + max(excess / problem.correlation_times(run), 0.0))
-        return Evidence(
-            *(n, excess, problem.loss(run, misfit), log),
-            weight * (g_shared + follow.T @ g_own),
-            weight * (H + across.T @ follow),
-            units * shift,
-            units[:, None] * follow,
-        )
+        for k, (run, _) in enumerate(asked):
+            n = problem.degrees[run]
+            if not sound[k]:
+                yield Evidence.diverged(n, own, H.shape[1])
+                continue
+            follow, shift = solved[k, :, :-1], solved[k, :, -1]
+            left, g_own = (units[:, None] * right[k, :, :-1]).T, units * right[k, :, -1]
+            misfit = float(value[k] + g_own @ shift)
+            excess, weight = misfit - n, 1.0
+            if problem.robust:
+                weight = 1 / (1 + max(excess / problem.correlation_times(run), 0.0))
+            yield Evidence(
+                *(n, excess, problem.loss(run, misfit), float(log[k])),
+                weight * (g_shared[k] + follow.T @ g_own),
+                weight * (H[k] + left @ follow),
+                units * shift,
+                units[:, None] * follow,
+            )
 
     @cached_property
     def _stacked(self) -> Mapping[int, tuple[Array, Array, Array, Array]]:
@@ -355,10 +375,6 @@ class Linear:
                 ends - states[1:],
             )
         return out
-
-    def evidences(self, q: float) -> dict[int, Evidence]:
-        """Evidences of all runs."""
-        return {run: self.evidence(run, q) for run in self.problem.by_run}
 
     def moved(
         self, evidences: Mapping[int, Evidence], d: Array, shares: Mapping[int, float] | None = None
@@ -664,10 +680,10 @@ def grid() -> list[float]:
 def most_likely(fit: Fit) -> float:
     """The strength of process noise with the highest marginal likelihood, at the fit's values."""
 
-    def deviance(q: float) -> float:
-        return sum(e.value + e.log for e in fit.linear.evidences(q).values())
-
-    return min(grid(), key=deviance)
+    runs, strengths = fit.problem.by_run, grid()
+    every = fit.linear.each([(run, q) for q in strengths for run in runs])
+    losses = np.array([e.value + e.log for e in every]).reshape(len(strengths), len(runs))
+    return strengths[int(np.argmin(losses.sum(axis=1)))]
 
 
 def fitted(
