@@ -625,7 +625,7 @@ def _stepped(
         d = np.clip(trust.stretch * d, low - here.u, high - here.u)
         after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
         for less in (0.3, 0.0):
-            if after.cost < here.cost or attempt > 1:
+            if after.cost < here.cost or attempt > 0:
                 break
             astray = _astray(after, here, losses)
             if not astray:

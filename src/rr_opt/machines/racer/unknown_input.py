@@ -131,12 +131,11 @@ def linearised_inputs(
         )
         made = Path(predicted.states[:, ::each], predicted.seen)
         t = racer.runs[segment.run].t[segment.span]
-        drives = pushes, t
         moments = _moments(path, t)
         plain = _with_drives(path, np.zeros((len(DRIVES), t.size)), moments)
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
-        every.append(drives)
+        every.append((pushes, t))
         own = own and _widened(own, each)
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
     motions = zip(requests, parts, every, linear(system, parts, p, by), strict=True)
