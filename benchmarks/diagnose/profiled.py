@@ -7,6 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from functools import cache
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -15,7 +16,6 @@ from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import read_experiment, usable
 from rr_opt.sysid import shooting
-from rr_opt.sysid.compiled import FINE
 from rr_opt.sysid.diagnose import diagnose
 from rr_opt.sysid.shooting import System
 
@@ -77,29 +77,21 @@ def _watched(
                 for one in args[0]:
                     path = one[0] if isinstance(one, tuple) else one.path
                     done[name] += path.h.size
-                    works[name] += path.h.size * _operations(first, name, path.each >= FINE)
+                    works[name] += path.h.size * _operations(first, name)
 
     return watched
 
 
-_counts: dict[tuple[System, str, bool], int] = {}
+@cache
+def _operations(system: System, name: str) -> int:
+    """Operations that CasADi counts in a step: of the step, or of the rates' Jacobian.
 
-
-def _operations(system: System, name: str, fine: bool) -> int:
-    """Operations that CasADi counts in a step: of the step, or of its four Jacobians, of which fine
-    and stiff steps have one.
-
-    What is done with those, some ten more for each quantity that is asked for, is not counted.
+    What is done with that, some ten more for each quantity that is asked for, is not counted.
     """
-    key = system, name, fine
-    if key not in _counts:
-        if name == "predictions":
-            _counts[key] = shooting._step(system).n_instructions()
-        else:
-            import casadi as ca
+    if name == "predictions":
+        return shooting._step(system).n_instructions()
+    import casadi as ca
 
-            inputs = system.rates.sx_in()
-            value = system.rates(*inputs)
-            by = ca.Function("by", inputs, ca.cse([value, ca.jacobian(value, ca.vertcat(*inputs))]))
-            _counts[key] = (1 if system.stiff or fine else 4) * by.n_instructions()
-    return _counts[key]
+    inputs = system.rates.sx_in()
+    by = ca.jacobian(system.rates(*inputs), ca.vertcat(*inputs))
+    return ca.Function("by", inputs, [ca.cse(by)]).n_instructions()

@@ -285,16 +285,16 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
     x, u, q = rates.sx_in()
     h = ca.SX.sym("h")
     P, Q = transition(ca.jacobian(ca.densify(rates(x, u, q)), x), h, stiff=stiff)
-    hop = [P, Q, *(ca.jacobian(ca.densify(rates(x, u, q)), by) for by in (u, q))]
+    tangent = [P, Q, *(ca.jacobian(ca.densify(rates(x, u, q)), by) for by in (u, q))]
     value = ca.densify(seen(x, u, q))
     by = [ca.jacobian(value, one) for one in (x, u, q)]
     head = {"NX": state, "ND": drive, "NP": p, "NY": outputs, "SEEN": sum(one.nnz() for one in by)}
-    head |= {f"HOP_{key}": one.nnz() for key, one in zip("PQRS", hop, strict=True)}
+    head |= {f"TANGENT_{key}": one.nnz() for key, one in zip("PQRS", tangent, strict=True)}
     head |= {f"SEEN_{key}": one.nnz() for key, one in zip("XRS", by, strict=True)}
-    head |= {"HOP": sum(one.nnz() for one in hop)}
+    head |= {"TANGENT": sum(one.nnz() for one in tangent)}
     made = {
         "step": step,
-        "hop": ca.Function("hop", [ca.vertcat(x, u, h), q], _nonzeros(hop)),
+        "tangent": ca.Function("tangent", [ca.vertcat(x, u, h), q], _nonzeros(tangent)),
         "seen": ca.Function("seen", [ca.vertcat(x, u), q], _nonzeros([value, *by])),
     }
     parts = []
@@ -304,7 +304,7 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
         head[f"K_{name.upper()}"] = parts[-1].kept[0]
     by_state = [int(by[0][i, :].nnz() > 0) for i in range(outputs)]
     tables = [
-        *_places("HOP", hop[2:]),
+        *_places("TANGENT", tangent[2:]),
         *_places("SEEN", by[1:]),
         _table("BY_STATE", by_state),
         *(_times(*one) for one in (("p", P), ("q", Q), ("seen", by[0]))),

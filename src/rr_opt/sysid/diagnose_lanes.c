@@ -1,15 +1,17 @@
 /* Predict runs, and linearise them, L of them side by side.
 
    Around functions of a system that were written above:
-     step_1(x, kept, out)    a step's end; x is the state and behind it the step's inputs: its length
-                             and the drive at its beginning, middle and end
-     hop_1(x, kept, out)     a step linearised: P and Q, of dx' = P dx + Q (R du + S dp), then R and S;
-                             x is the state and the drive in the middle of the step, and its length
-     seen_1(x, kept, out)    what is seen, and its derivatives by state, drive and p; x is the state
-                             and behind it the drive
-   each after NAME_0(p, kept), which is what they need of p alone. Of matrices there are the nonzeros,
-   column by column. HOP_ROW, HOP_COLUMN, SEEN_ROW and SEEN_COLUMN say where those by drive and p
-   stand; p_times, q_times and seen_times (by the state) add the product with a vector. */
+     step_1(x, kept, out)     a step's end; x is the state and behind it the step's inputs: its
+                              length and the drive at its beginning, middle and end
+     tangent_1(x, kept, out)  a step linearised: P and Q, of dx' = P dx + Q (R du + S dp), then R
+                              and S; x is the state and the drive in the middle of the step, and its
+                              length
+     seen_1(x, kept, out)     what is seen, and its derivatives by state, drive and p; x is the state
+                              and behind it the drive
+   each after NAME_0(p, kept), which is what they need of p alone. Of matrices there are the
+   nonzeros, column by column. TANGENT_ROW, TANGENT_COLUMN, SEEN_ROW, SEEN_COLUMN say where those by
+   drive and p stand; p_times, q_times and seen_times (by the state) add the product with a vector.
+*/
 
 #define NODE (1 + 3 * ND)
 
@@ -58,7 +60,7 @@ typedef struct {
 typedef struct {
   const Run* of[L];
   long long own, most;
-  V step_kept[K_STEP + 1], hop_kept[K_HOP + 1], seen_kept[K_SEEN + 1];
+  V step_kept[K_STEP + 1], tangent_kept[K_TANGENT + 1], seen_kept[K_SEEN + 1];
 } Group;
 
 static void group_of(const Run* runs, long long from, long long count, Group* group) {
@@ -73,7 +75,7 @@ static void group_of(const Run* runs, long long from, long long count, Group* gr
     for (i = 0; i < NP; ++i) p[i][l] = run->p[i];
   }
   step_0(p, group->step_kept);
-  hop_0(p, group->hop_kept);
+  tangent_0(p, group->tangent_kept);
   seen_0(p, group->seen_kept);
 }
 
@@ -202,8 +204,8 @@ INLINE void add_terms(const Term* terms, long long count, const V* by, const V* 
    the terms are taken from, with their tables. */
 typedef struct {
   V *M, *of_step, *of_seen, *J, *S, *from;
-  Term *hop, *seen;
-  long long n, wide, hops, sees;
+  Term *by_step, *by_seen;
+  long long n, wide, step_terms, seen_terms;
   void* all;
 } Room;
 
@@ -212,20 +214,21 @@ static int room_for(const Asked* asked, Room* room) {
   long long sizes[6] = {NX * n,    NX * asked->nq,          NY * asked->nq,
                         NY * wide, wide * (wide + 1) / 2, asked->entries + ND * asked->moves};
   V** places[6] = {&room->M, &room->of_step, &room->of_seen, &room->J, &room->S, &room->from};
-  long long hops = HOP_R * asked->moves + HOP_S * asked->nq;
-  long long sees = SEEN_R * asked->moves + SEEN_S * asked->nq, terms, total = 0, k;
+  long long most_step = TANGENT_R * asked->moves + TANGENT_S * asked->nq;
+  long long most_seen = SEEN_R * asked->moves + SEEN_S * asked->nq, terms, total = 0, k;
   for (k = 0; k < 6; ++k) total += sizes[k] * sizeof(V);
-  terms = ((hops + sees) * sizeof(Term) / sizeof(V) + 1) * sizeof(V);
+  terms = ((most_step + most_seen) * sizeof(Term) / sizeof(V) + 1) * sizeof(V);
   room->all = aligned_alloc(sizeof(V), total + terms);
   if (!room->all) return 0;
   memset(room->all, 0, total);
   for (k = total = 0; k < 6; total += sizes[k++]) *places[k] = (V*)room->all + total;
-  room->hop = (Term*)((V*)room->all + total);
-  room->seen = room->hop + hops;
+  room->by_step = (Term*)((V*)room->all + total);
+  room->by_seen = room->by_step + most_step;
   room->n = n;
   room->wide = wide;
-  room->hops = terms_of(HOP_ROW, HOP_COLUMN, HOP_R, HOP_S, asked, room->hop);
-  room->sees = terms_of(SEEN_ROW, SEEN_COLUMN, SEEN_R, SEEN_S, asked, room->seen);
+  room->step_terms =
+      terms_of(TANGENT_ROW, TANGENT_COLUMN, TANGENT_R, TANGENT_S, asked, room->by_step);
+  room->seen_terms = terms_of(SEEN_ROW, SEEN_COLUMN, SEEN_R, SEEN_S, asked, room->by_seen);
   return 1;
 }
 
@@ -244,14 +247,14 @@ static void moved_at(const Group* group, const Asked* asked, int within, const l
 /* M after step k, from the middle of its chord. */
 static void linear_step(const Group* group, const Asked* asked, const Room* room, long long k,
                         const V* in, const V* x) {
-  V at[NX + ND + 1], out[HOP], m[NX], f[NX], to[NX];
-  const V *P = out, *Q = P + HOP_P, *by = Q + HOP_Q;
+  V at[NX + ND + 1], out[TANGENT], m[NX], f[NX], to[NX];
+  const V *P = out, *Q = P + TANGENT_P, *by = Q + TANGENT_Q;
   long long place[L], n = room->n, c;
   int i, l;
   for (i = 0; i < NX; ++i) at[i] = (x[i] + x[NX + i]) / 2.0;
   for (i = 0; i < ND; ++i) at[NX + i] = in[1 + ND + i];
   at[NX + ND] = in[0];
-  hop_1(at, group->hop_kept, out);
+  tangent_1(at, group->tangent_kept, out);
   if (asked->moves) {
     for (l = 0; l < L; ++l) {
       long long last = group->of[l]->steps - 1;
@@ -259,7 +262,7 @@ static void linear_step(const Group* group, const Asked* asked, const Room* room
     }
     moved_at(group, asked, 1, place, room->from + asked->entries);
   }
-  add_terms(room->hop, room->hops, by, room->from, room->of_step);
+  add_terms(room->by_step, room->step_terms, by, room->from, room->of_step);
   for (c = 0; c < n; ++c) {
     UNROLLED for (i = 0; i < NX; ++i) m[i] = room->M[i * n + c], to[i] = all(0.0);
     p_times(P, m, to);
@@ -315,11 +318,12 @@ static void seen_at(const Group* group, const Asked* asked, const Room* room, co
     }
   }
   if (asked->moves) moved_at(group, asked, 0, place, room->from + asked->entries);
-  add_terms(room->seen, room->sees, by + SEEN_X, room->from, room->of_seen);
+  add_terms(room->by_seen, room->seen_terms, by + SEEN_X, room->from, room->of_seen);
   for (i = 0; i < NY; ++i) off[i] = (out[i] - off[i]) * weight[i];
   for (c = 0; c < n; ++c) {
     UNROLLED for (i = 0; i < NX; ++i) m[i] = room->M[i * n + c];
-    UNROLLED for (i = 0; i < NY; ++i) to[i] = c < NX ? all(0.0) : room->of_seen[i * asked->nq + c - NX];
+    UNROLLED for (i = 0; i < NY; ++i)
+      to[i] = c < NX ? all(0.0) : room->of_seen[i * asked->nq + c - NX];
     seen_times(by, m, to);
     for (i = 0; i < NY; ++i)
       if (there[i] >= 0) room->J[there[i] * wide + c] = to[i] * weight[i];
