@@ -112,6 +112,20 @@ def test_steps_of_different_length_side_by_side(monkeypatch):
 
 
 @needs_compiler
+def test_a_source_is_written_only_to_be_compiled(monkeypatch, own_cache):
+    written = []
+    write = shoot.source_of
+    monkeypatch.setattr(
+        shoot, "source_of", lambda *of, **how: written.append(1) or write(*of, **how)
+    )
+    system = CASES["smooth"][0]
+    for stiff, writer, files in ((0, "one", 1), (0, "one", 1), (0, "other", 2), (1, "other", 3)):
+        monkeypatch.setattr(shoot, "_writer", lambda writer=writer: writer)
+        assert shoot._compiled(replace(system, stiff=stiff), make=True)
+        assert len(list(own_cache.glob("*.so"))) == len(written) == files
+
+
+@needs_compiler
 def test_what_does_not_compile_is_done_without(own_cache):
     assert found("this is not C", 1, 1, make=True) is None
     assert not list(own_cache.iterdir())
