@@ -284,9 +284,9 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
     outputs = seen.numel_out(0)
     x, u, q = rates.sx_in()
     h = ca.SX.sym("h")
-    P, Q = transition(ca.jacobian(ca.densify(rates(x, u, q)), x), h, stiff=stiff)
-    tangent = [P, Q, *(ca.jacobian(ca.densify(rates(x, u, q)), by) for by in (u, q))]
-    value = ca.densify(seen(x, u, q))
+    slope, value = ca.densify(rates(x, u, q)), ca.densify(seen(x, u, q))
+    P, Q = transition(ca.jacobian(slope, x), h, stiff=stiff)
+    tangent = [P, Q, ca.jacobian(slope, u), ca.jacobian(slope, q)]
     by = [ca.jacobian(value, one) for one in (x, u, q)]
     head = {"NX": state, "ND": drive, "NP": p, "NY": outputs, "SEEN": sum(one.nnz() for one in by)}
     head |= {f"TANGENT_{key}": one.nnz() for key, one in zip("PQRS", tangent, strict=True)}

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,7 +123,7 @@ def _linear(
     system: System, parts: Sequence[Part], p: Array, wanted: Array
 ) -> Iterator[LinearMotion]:
     size, nd = parts[0].made.states.shape[0], parts[0].path.at.shape[0]
-    A, B = _transitions(_Along(system, parts, p, wanted))
+    A, B = _transitions(system, parts, p, wanted)
     at = np.hstack([one.made.states[:, :: one.path.each] for one in parts])
     drive = np.hstack([one.path.at for one in parts])
     channels = parts[0].made.seen.shape[1]
@@ -171,60 +170,45 @@ def slopes(
     return Slopes(seen[:, :, size:], seen[:, :, :size], carried[-1])
 
 
-@dataclass(frozen=True)
-class _Along:
-    """Paths to linearise, one after the other, and what by."""
-
-    system: System
-    parts: Sequence[Part]
-    p: Array
-    wanted: Array
-
-    @cached_property
-    def middle(self) -> Array:
-        """The states in the middle of each step's chord (size, steps)."""
-        states = [one.made.states for one in self.parts]
-        return np.hstack([(x[:, :-1] + x[:, 1:]) / 2 for x in states])
-
-    @cached_property
-    def h(self) -> Array:
-        """Length of each step, s."""
-        return np.concatenate([one.path.h for one in self.parts])
-
-    def forces(self) -> tuple[Array, Array]:
-        """The rates' derivatives by the state (steps, size, size), and by the wanted quantities and
-        the hats (steps, size, nw), in the middle of all steps."""
-        drive = _joined([one.path.nodes[:, 1] for one in self.parts], 1)
-        by = arrays_of(self.system, "rates_by")(*self.middle, *drive, *self.p)
-        fx, fd, fp = _split(by, len(self.middle), len(drive), self.p.size, self.h.size)
-        force = fp @ self.wanted
-        moved = [one.drive_by for one in self.parts if one.drive_by]
-        if moved:
-            by_drive = _joined([one.middle for one in moved], 1)
-            force[:, :, moved[0].columns] += np.einsum("sid,dsw->siw", fd, by_drive)
-        hats = [one.hats for one in self.parts if one.hats]
-        if not hats:
-            return fx, force
-        hat = fd[:, :, hats[0].rows]
-        later = hat * np.hstack([one.passed for one in hats])[:, None, None]
-        return fx, np.concatenate([force, hat - later, later], axis=2)
-
-
-def _transitions(along: _Along) -> tuple[Array, Array]:
-    """The midpoint rule along the steps' chords: A (steps, size, size), B (steps, size, nw).
+def _transitions(
+    system: System, parts: Sequence[Part], p: Array, wanted: Array
+) -> tuple[Array, Array]:
+    """The midpoint rule along the steps' chords, one path after the other: A (steps, size, size),
+    B (steps, size, nw).
 
     With stiff states exp(z), z = h fx, is replaced by its Pade approximant
     (1 + z/3)/(1 - 2z/3 + z^2/6), which damps them.
     """
-    h = along.h[:, None, None]
-    fx, force = along.forces()
+    h = np.concatenate([one.path.h for one in parts])[:, None, None]
+    fx, force = _forces(system, parts, p, wanted)
     eye, z, push = np.eye(fx.shape[1]), h * fx, h * force
-    if not along.system.stiff:
+    if not system.stiff:
         return eye + z + z @ z / 2, push + z @ push / 2
     left = eye - 2 / 3 * z + z @ z / 6
     right = np.concatenate([eye + z / 3, push - z @ push / 6], axis=2)
     both = np.linalg.solve(left, right).astype(float)
     return both[:, :, : len(eye)], both[:, :, len(eye) :]
+
+
+def _forces(system: System, parts: Sequence[Part], p: Array, wanted: Array) -> tuple[Array, Array]:
+    """The rates' derivatives by the state (steps, size, size), and by the wanted quantities and
+    the hats (steps, size, nw), in the middle of all steps."""
+    states = [one.made.states for one in parts]
+    middle = np.hstack([(x[:, :-1] + x[:, 1:]) / 2 for x in states])
+    drive = _joined([one.path.nodes[:, 1] for one in parts], 1)
+    by = arrays_of(system, "rates_by")(*middle, *drive, *p)
+    fx, fd, fp = _split(by, len(middle), len(drive), p.size, middle.shape[1])
+    force = fp @ wanted
+    moved = [one.drive_by for one in parts if one.drive_by]
+    if moved:
+        by_drive = _joined([one.middle for one in moved], 1)
+        force[:, :, moved[0].columns] += np.einsum("sid,dsw->siw", fd, by_drive)
+    hats = [one.hats for one in parts if one.hats]
+    if not hats:
+        return fx, force
+    hat = fd[:, :, hats[0].rows]
+    later = hat * np.hstack([one.passed for one in hats])[:, None, None]
+    return fx, np.concatenate([force, hat - later, later], axis=2)
 
 
 def _split(parts, rows: int, nd: int, np_: int, count: int, nx: int | None = None) -> Jacobian:

@@ -132,8 +132,8 @@ def _writer() -> str:
 
 @lru_cache(maxsize=256)
 def arrays_of(system: System, which: str) -> ArrayFunction:
-    """`rates`, `seen`, or their derivatives `rates_by`, `seen_by`, over arrays."""
-    function = system.rates if which.startswith("rates") else system.seen
+    """`seen`, its derivatives `seen_by`, or those of the rates, `rates_by`, over arrays."""
+    function = system.rates if which == "rates_by" else system.seen
     if which.endswith("_by"):
         inputs = function.sx_in()
         by = ca.densify(ca.jacobian(function(*inputs), ca.vertcat(*inputs)))
