@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import lru_cache
 from typing import TypeVar
 
@@ -15,13 +15,18 @@ def in_threads(work: Callable[[Part], Done], parts: Sequence[Part]) -> list[Done
     call this itself."""
     if min(_processors(), len(parts)) < 2:
         return [work(part) for part in parts]
-    return list(_pool(os.getpid()).map(work, parts))
+    return list(_pool(os.getpid(), "at-once").map(work, parts))
 
 
-@lru_cache(maxsize=1)
-def _pool(process: int) -> ThreadPoolExecutor:
+def in_background(work: Callable[[], Done]) -> Future[Done]:
+    """work(), begun in a thread of its own as soon as a processor is free of such work."""
+    return _pool(os.getpid(), "background").submit(work)
+
+
+@lru_cache(maxsize=2)
+def _pool(process: int, purpose: str) -> ThreadPoolExecutor:
     """Threads of this process: a fork does not inherit its parent's."""
-    return ThreadPoolExecutor(_processors(), f"rr-opt-{process}")
+    return ThreadPoolExecutor(_processors(), f"rr-opt-{process}-{purpose}")
 
 
 def _processors() -> int:

@@ -88,6 +88,9 @@ class LinearModel:
         """The second may be known."""
         return self._prior
 
+    def prepare(self, every) -> None:
+        """Nothing to do."""
+
     def simulate(
         self, requests: Sequence[Request], effects: tuple[str, ...]
     ) -> Sequence[Simulation]:

@@ -178,3 +178,40 @@ def test_a_run_whose_drive_stays_beside_one_whose_drive_is_moved(monkeypatch):
     for fast, slow in zip(grams(replace(system, lasts=True), asked), plain, strict=True):
         for a, b in zip(fast, slow, strict=True):
             np.testing.assert_allclose(a, b, rtol=1e-9)
+
+
+def twins():
+    system = CASES["smooth"][0]
+    return replace(system, lasts=True), replace(system, stiff=1, lasts=True)
+
+
+@needs_compiler
+def test_what_will_be_used_as_much_is_compiled_ahead(own_cache):
+    used, ahead = twins()
+    shoot.code_of(used, shoot._PAYS + 1)
+    shoot.prepare([used, ahead], like=used)
+    code = shoot._begun[ahead].result()
+    assert used not in shoot._begun
+    assert len(list(own_cache.glob("*.so"))) == 2
+    # Its first step is stepped by what was compiled.
+    assert code is not None
+    assert shoot.code_of(ahead, 1) is code
+
+
+def test_nothing_is_compiled_ahead_for_little_use(own_cache):
+    used, ahead = twins()
+    shoot.code_of(used, shoot._FEW)
+    shoot.prepare([ahead], like=used)
+    assert ahead not in shoot._begun
+    assert not list(own_cache.glob("*.so"))
+
+
+def test_what_cannot_be_compiled_ahead_is_done_without(monkeypatch):
+    monkeypatch.setenv("CC", "no-such-compiler")
+    used, ahead = twins()
+    shoot.code_of(used, shoot._PAYS + 1)
+    shoot.prepare([ahead], like=used)
+    _, drive, start, p, _ = CASES["smooth"]
+    (made,) = predict_all(ahead, [(drive, np.array(start), np.array(p))])
+    (plain,) = predict_all(replace(ahead, lasts=False), [(drive, np.array(start), np.array(p))])
+    np.testing.assert_array_equal(made.states, plain.states)

@@ -44,7 +44,9 @@ class Settling(Selection):
         self.elpd, self.guesses = elpd, {}
         known = [effect("drag", smooth=True), effect("creep", smooth=False)]
         known.append(effect("patch", smooth=False, guesses=()))
-        self.model = SimpleNamespace(catalogue={one.name: one for one in known})  # pyright: ignore
+        catalogue = {one.name: one for one in known}
+        self.prepared: list[tuple[str, ...]] = []
+        self.model: Any = SimpleNamespace(catalogue=catalogue, prepare=self.prepared.extend)
 
     def complete(self, candidate):
         return True
@@ -64,6 +66,7 @@ def test_an_effect_without_a_score_is_fitted_from_its_usual_size():
     selection = Settling(elpd=10.0)
     selection._forward()
     assert selection.guesses == {(Choice("creep"),): [{"creep.size": 0.3}]}
+    assert selection.prepared == [("creep",)]
     assert selection.best.effects == ("creep",)
 
 

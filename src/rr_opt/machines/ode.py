@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -40,7 +40,7 @@ from rr_opt.sysid.model import (
 )
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
 from rr_opt.sysid.settings import SETTINGS
-from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
+from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all, prepare
 
 _EARLY = 0.05
 """s, from which the state at the beginning of a segment is estimated."""
@@ -211,6 +211,10 @@ class OdeModel:
         return np.full(self._state_scale.size, np.inf)
 
     # ---- prediction
+
+    def prepare(self, every: Iterable[tuple[str, ...]]) -> None:
+        """Compile ahead."""
+        prepare((self._system(one)[0] for one in every), self._system(())[0])
 
     def simulate(
         self, requests: Sequence[Request], effects: tuple[str, ...]

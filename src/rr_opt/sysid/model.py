@@ -7,7 +7,7 @@ own, so that a fit never has to simulate for longer than the model can be truste
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -262,6 +262,10 @@ class Model(Protocol):
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Prior standard deviation of each state that is known to be about 0; else inf."""
+        ...
+
+    def prepare(self, every: Iterable[tuple[str, ...]]) -> None:
+        """Get ready to simulate with each of these sets of effects soon."""
         ...
 
     def simulate(

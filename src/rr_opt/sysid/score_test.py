@@ -26,6 +26,13 @@ class Score:
     guess: Mapping[str, float]
 
 
+def with_all(fit: Fit) -> tuple[str, ...]:
+    """The fit's effects, and all smooth ones that it lacks."""
+    catalogue = fit.problem.model.catalogue
+    lacking = [one for one in catalogue if catalogue[one].smooth and one not in fit.effects]
+    return tuple(sorted((*fit.effects, *lacking)))
+
+
 def scores(fit: Fit, most: int = 2) -> list[Score]:
     """Scores of all smooth effects that the fit lacks, and of all pairs of them; best first."""
     model, problem = fit.problem.model, fit.problem
@@ -42,7 +49,7 @@ def scores(fit: Fit, most: int = 2) -> list[Score]:
         q.name: q for one in choices for q in model.catalogue[one.name].forms[one.form].quantities
     }
     quantities = (*problem.quantities, *added.values())
-    effects = tuple(sorted((*fit.effects, *names)))
+    effects = with_all(fit)
     values = {**fit.values, **{q.name: q.neutral for q in added.values()}}
     states = {
         one: model.converted(Request(one, values, state), fit.effects, effects)

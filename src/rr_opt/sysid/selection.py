@@ -18,7 +18,7 @@ from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import predicted
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
-from rr_opt.sysid.score_test import scores
+from rr_opt.sysid.score_test import scores, with_all
 from rr_opt.sysid.settings import SETTINGS
 
 Progress = Callable[[str], None]
@@ -46,6 +46,8 @@ class Selection:
     def begun(cls, model: MachineModel, base: Candidate, progress: Progress) -> Selection:
         """A search that has begun with the effects of the drive."""
         selection = cls(model, base, progress)
+        if not selection.insignificant(base):
+            model.prepare([with_all(base.fit)])
         selection.drive()
         return selection
 
@@ -188,21 +190,30 @@ class Selection:
         promising = [s for s in scores(parent.fit, min(room, 2)) if s.gain > 0]
         singles = [s for s in promising if len(s.choices) == 1][: SETTINGS.promising]
         pairs = [s for s in promising if len(s.choices) == 2][: SETTINGS.promising]
-        for one in singles:
-            yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
-        best = _best(self.tried[tuple(sorted((*parent.choices, *one.choices)))] for one in singles)
+        alone = [*self._added((one.choices, [one.guess]) for one in singles)]
+        yield from alone
+        best = _best(alone)
         if best is None or not self.complete(best):
-            for one in pairs:
-                yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
+            yield from self._added((one.choices, [one.guess]) for one in pairs)
+
+    def _added(
+        self, asked: Iterable[tuple[Sequence[Choice], Sequence[Mapping[str, float]]]]
+    ) -> Iterator[Candidate]:
+        """The best candidate with further effects, given guesses of their values."""
+        parent, every = self.best, [*asked]
+        self.model.prepare((*parent.effects, *(c.name for c in more)) for more, _ in every)
+        for more, guesses in every:
+            yield self.fitted((*parent.choices, *more), guesses, parent)
 
     def _unscored(self) -> Iterator[Candidate]:
         """Effects that a score test cannot detect, from their usual size, lest an imitation win."""
-        parent = self.best
-        for name, info in self.model.catalogue.items():
-            form = info.forms[0]
-            if not (info.smooth or info.upstream or name in parent.effects) and form.guesses:
-                usual = {q.name: q.scale for q in form.quantities}
-                yield self.fitted((*parent.choices, Choice(name)), [usual], parent)
+        usual = {
+            name: {q.name: q.scale for q in info.forms[0].quantities}
+            for name, info in self.model.catalogue.items()
+            if not (info.smooth or info.upstream or name in self.best.effects)
+            and info.forms[0].guesses
+        }
+        yield from self._added(((Choice(name),), [guess]) for name, guess in usual.items())
 
     def _extended(self) -> Iterator[Candidate]:
         """Each effect in a fuller form."""
@@ -229,8 +240,7 @@ class Selection:
         guesses: dict[Choice, list[Mapping[str, float]]] = {}
         for choice, guess in self.model.proposals(parent.fit, parent.effects):
             guesses.setdefault(choice, []).append(guess)
-        for choice, some in guesses.items():
-            yield self.fitted((*parent.choices, choice), some, parent)
+        yield from self._added(((choice,), some) for choice, some in guesses.items())
 
     def _refine(self) -> None:
         """Choose the forms that predict best, even if the misfit is already insignificant."""
@@ -288,8 +298,10 @@ class Selection:
             self.best = best
 
     def _fewer(self, candidate: Candidate) -> Iterator[Candidate]:
-        for choice in candidate.choices:
-            yield self._part(candidate, tuple(c for c in candidate.choices if c is not choice))
+        parts = [tuple(c for c in candidate.choices if c is not one) for one in candidate.choices]
+        self.model.prepare(tuple(c.name for c in part) for part in parts)
+        for part in parts:
+            yield self._part(candidate, part)
 
     def _part(self, whole: Candidate, key: tuple[Choice, ...]) -> Candidate:
         """A candidate with fewer effects. Before it counts as worse it is also fitted from the

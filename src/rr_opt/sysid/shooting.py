@@ -7,9 +7,10 @@ compiler, and then several runs are stepped at once. For derivatives see `sensit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import casadi as ca
 import numpy as np
@@ -17,6 +18,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays, source_file
 from rr_opt.sysid.compiled import Compiled, found, source_of
+from rr_opt.threads import in_background
 
 _FEW, _PAYS = 10_000, 100_000
 """Steps, with derivatives counted fourfold, that take as long as a look into the compile cache,
@@ -105,20 +107,50 @@ def code_of(system: System, steps: int) -> Compiled | None:
     if not system.lasts:
         return None
     used = _used[system] = _used.get(system, 0) + steps
+    if system in _begun:
+        return _begun[system].result()
     return _compiled(system, make=used > _PAYS) if used > _FEW else None
+
+
+_begun: dict[System, Future[Compiled | None]] = {}
+
+
+def prepare(systems: Iterable[System], like: System) -> None:
+    """Begin to compile, in the background, systems that will be used about as much as another one
+    was, if that paid."""
+    if _used.get(like, 0) <= _PAYS:
+        return
+    for one in systems:
+        if one.lasts and one not in _begun and _compiled(one, make=False) is None:
+            try:
+                # Written here, as CasADi is not safe in threads.
+                source = _source(one)
+            except NotImplementedError:
+                continue
+            make = partial(found, source, *_sizes(one), make=True, key=_key(one))
+            _begun[one] = in_background(make)
 
 
 @lru_cache(maxsize=64)
 def _compiled(system: System, *, make: bool) -> Compiled | None:
-    rates, seen, stiff = system.rates, system.seen, bool(system.stiff)
-    key = "\n".join((rates.serialize(), seen.serialize(), str(stiff), _writer()))
-    sizes = rates.numel_in(0), seen.numel_out(0)
     try:
-        return found(
-            lambda: source_of(_step(system), rates, seen, stiff=stiff), *sizes, make=make, key=key
-        )
+        return found(partial(_source, system), *_sizes(system), make=make, key=_key(system))
     except NotImplementedError:
         return None
+
+
+def _source(system: System) -> str:
+    return source_of(_step(system), system.rates, system.seen, stiff=bool(system.stiff))
+
+
+def _sizes(system: System) -> tuple[int, int]:
+    return system.rates.numel_in(0), system.seen.numel_out(0)
+
+
+def _key(system: System) -> str:
+    """What the source is written from."""
+    stiff = str(bool(system.stiff))
+    return "\n".join((system.rates.serialize(), system.seen.serialize(), stiff, _writer()))
 
 
 @lru_cache(maxsize=1)

@@ -1,7 +1,7 @@
 """The Roller Racer as a model that can be identified; implements `sysid.model.Model`."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Self
@@ -189,6 +189,10 @@ class RacerModel:
         """Side speeds are about 0: what they do to the motion is of the order of the noise."""
         scale = self.state_scale(effects)
         return np.array([*[np.inf] * 4, *scale[4:]])
+
+    def prepare(self, every: Iterable[tuple[str, ...]]) -> None:
+        """Compile ahead."""
+        self.simulator.prepare(every)
 
     def simulate(
         self, requests: Sequence[Request], effects: tuple[str, ...]

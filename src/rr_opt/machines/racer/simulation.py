@@ -6,7 +6,7 @@ axles may slip it is x, y, psi, v and both side speeds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -32,7 +32,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.floor_motion import FloorMotion, floor_motion
 from rr_opt.sysid.model import Data, Linearisation, Request, Segment, Simulation
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
-from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
+from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all, prepare
 
 V = 3
 """Index of z or v in the state."""
@@ -186,6 +186,10 @@ class Simulator:
             values[segment.until - segment.first :] = np.nan
             self._seen[segment] = Recorded.of(values, data.weighted_sigma[segment.span])
         return self._seen[segment]
+
+    def prepare(self, every: Iterable[tuple[str, ...]]) -> None:
+        """Compile the motion with each of these sets of effects ahead."""
+        prepare((driven(self.every(one))[0] for one in every), driven(self.every(()))[0])
 
     def simulate(
         self, requests: Sequence[Request], effects: tuple[str, ...]
