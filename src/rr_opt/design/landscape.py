@@ -111,7 +111,7 @@ class Landscape:
             for column, values in zip(p.T, self._parameters(gaits[3]), strict=True):
                 column[:] = values
             return _by_code(loop, gaits, p, nodes)
-        blocks = math.ceil(count * nodes / _BLOCK)
+        blocks = min(math.ceil(count * nodes / _BLOCK), count)
         # A gait that does not converge gives inf or nan; the caller checks.
         with np.errstate(all="ignore"):
             parts = [self._block(part, nodes) for part in np.array_split(gaits, blocks, axis=1)]
@@ -300,17 +300,32 @@ def _close_affine(a: Array, b: Array, h: Array) -> Array:
 
 
 def _periodic(gain: Array, shift: Array) -> Array:
-    """The periodic solution (N, K) of v_k+1 = gain_k v_k + shift_k."""
-    # Python floats are ten times faster here than one-element arrays.
-    single = gain.shape[1] == 1
-    gains, shifts = (x[:, 0].tolist() if single else list(x) for x in (gain, shift))
-    product, total = 1.0, 0.0
-    for g, s in zip(gains, shifts, strict=True):
-        product, total = g * product, g * total + s
-    path = [np.divide(total, 1 - product)]
-    for g, s in zip(gains[:-1], shifts[:-1], strict=True):
-        path.append(g * path[-1] + s)
-    return np.reshape(path, gain.shape)
+    """The periodic solution (N, K) of v_k+1 = gain_k v_k + shift_k.
+
+    Steps are composed in blocks, side by side: a loop over all of them would take ten times longer.
+    """
+    count, columns = gain.shape
+    length = math.isqrt(count - 1) + 1
+    blocks = -(-count // length)
+    rest = np.zeros((blocks * length - count, columns))
+    gains = np.concatenate([gain, rest + 1]).reshape(blocks, length, columns)
+    shifts = np.concatenate([shift, rest]).reshape(blocks, length, columns)
+    # v = products v_0 + totals, with v_0 at the beginning of each block.
+    products = np.ones((length + 1, blocks, columns))
+    totals = np.zeros_like(products)
+    for k in range(length):
+        np.multiply(gains[:, k], products[k], out=products[k + 1])
+        np.multiply(gains[:, k], totals[k], out=totals[k + 1])
+        totals[k + 1] += shifts[:, k]
+    start = np.empty((blocks + 1, columns))
+    across, total = 1.0, 0.0
+    for g, s in zip(products[-1], totals[-1], strict=True):
+        across, total = g * across, g * total + s
+    start[0] = np.divide(total, 1 - across)
+    for k in range(blocks):
+        start[k + 1] = products[-1, k] * start[k] + totals[-1, k]
+    path = products[:-1] * start[:-1] + totals[:-1]
+    return path.swapaxes(0, 1).reshape(blocks * length, columns)[:count]
 
 
 def _summary(v: Array, w: Array, side: Array, torque: Array, period: Array) -> Cycles:
