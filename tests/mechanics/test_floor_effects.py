@@ -41,7 +41,7 @@ def rolling(robot: Robot, given: dict) -> Law:
         if values := given.get("coulomb_friction"):
             # In 5 ms the friction must not turn the speed round.
             mass = robot.platform1.m + robot.platform2.m
-            soft = values["onset"] + 0.005 * 2 * (values["force1"] + values["force2"]) / mass
+            soft = values["onset"] + 0.002 * 2 * (values["force1"] + values["force2"]) / mass
             force -= values[f"force{n}"] * math.tanh(u / soft)
         if values := given.get("floor_patch"):
             away = math.sqrt(math.dist(place, (values["x"], values["y"])) ** 2 + 0.0005**2)
