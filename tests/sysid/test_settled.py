@@ -55,8 +55,11 @@ class Settling(Selection):
         self.guesses[choices] = guesses
         return Made(choices, self.elpd)
 
-    def _scored(self) -> Any:
-        return [Made((Choice("drag"),), 0.0)]
+    def _promising(self) -> Any:
+        return ()
+
+    def _scored(self, promising, size) -> Any:
+        return [Made((Choice("drag"),), 0.0)] if size == 1 else []
 
     def _extended(self) -> Any:
         raise LookupError("not settled")
@@ -75,20 +78,30 @@ def test_a_tie_is_not_settled():
         Settling(elpd=-1.0)._forward()
 
 
-def test_two_effects_do_not_settle_what_one_may_do():
+@pytest.mark.parametrize(("alone", "pairs"), [(10.0, False), (-99.0, True)])
+def test_two_effects_are_tried_where_no_single_one_wins(alone, pairs):
     class Imitated(Settling):
-        def _scored(self) -> Any:
-            return [Made((Choice("drag"), Choice("tilt")), 0.0)]
+        def complete(self, candidate):
+            return "drag" not in candidate.effects
+
+        def _scored(self, promising, size) -> Any:
+            if size == 2:
+                raise LookupError("a pair is tried")
+            return [Made((Choice("drag"),), 0.0)]
 
         def _extended(self) -> Any:
             return []
 
         def _proposed(self) -> Any:
-            return [Made((Choice("slip"),), 10.0)]
+            return [Made((Choice("slip"),), alone)]
 
     selection = Imitated(elpd=-50.0)
-    selection._forward()
-    assert selection.best.effects == ("slip",)
+    if pairs:
+        with pytest.raises(LookupError, match="a pair"):
+            selection._forward()
+    else:
+        selection._forward()
+        assert selection.best.effects == ("slip",)
 
 
 @pytest.mark.parametrize(
@@ -110,8 +123,8 @@ def test_a_step_that_leaves_about_as_much_is_not_taken(whole, segments, taken):
         def complete(self, candidate):
             return False
 
-        def _scored(self) -> Any:
-            return [Advancing((Choice("drag"),), 0.0)]
+        def _scored(self, promising, size) -> Any:
+            return [Advancing((Choice("drag"),), 0.0)] if size == 1 else []
 
         def _extended(self) -> Any:
             return []

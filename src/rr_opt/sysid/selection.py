@@ -18,7 +18,7 @@ from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import predicted
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
-from rr_opt.sysid.score_test import scores, with_all
+from rr_opt.sysid.score_test import Score, scores, with_all
 from rr_opt.sysid.settings import SETTINGS
 
 Progress = Callable[[str], None]
@@ -159,9 +159,12 @@ class Selection:
                 self.best = one
 
     def _forward(self) -> None:
-        """A forward step; the search is widened until one candidate clearly wins."""
+        """A forward step; the search is widened until one candidate clearly wins: two effects are
+        tried at once only where no single one does."""
         self.progress("testing candidate effects")
-        found = [*self._scored()]
+        promising = self._promising()
+        found = [*self._scored(promising, 1)]
+        alone = _best(found)
         if self._settled(found):
             found += self._unscored()
         if not self._settled(found):
@@ -169,6 +172,8 @@ class Selection:
         if not self._settled(found):
             self.progress("searching for effects without derivatives")
             found += self._proposed()
+        if not (alone and self.complete(alone)) and not self._settled(found):
+            found += self._scored(promising, 2)
         best = _best(found)
         if best and best.predicts_better(self.best) and best.advances(self.best):
             self.best = best
@@ -184,17 +189,14 @@ class Selection:
         others = [one for one in found if one.effects != best.effects]
         return all(best.predicts_better(one) for one in (self.best, *others))
 
-    def _scored(self) -> Iterator[Candidate]:
-        parent = self.best
-        room = SETTINGS.most_effects - len(parent.choices)
-        promising = [s for s in scores(parent.fit, min(room, 2)) if s.gain > 0]
-        singles = [s for s in promising if len(s.choices) == 1][: SETTINGS.promising]
-        pairs = [s for s in promising if len(s.choices) == 2][: SETTINGS.promising]
-        alone = [*self._added((one.choices, [one.guess]) for one in singles)]
-        yield from alone
-        best = _best(alone)
-        if best is None or not self.complete(best):
-            yield from self._added((one.choices, [one.guess]) for one in pairs)
+    def _promising(self) -> list[Score]:
+        room = SETTINGS.most_effects - len(self.best.choices)
+        return [one for one in scores(self.best.fit, min(room, 2)) if one.gain > 0]
+
+    def _scored(self, promising: Sequence[Score], size: int) -> Iterator[Candidate]:
+        """The most promising sets of so many further effects."""
+        some = [one for one in promising if len(one.choices) == size][: SETTINGS.promising]
+        yield from self._added((one.choices, [one.guess]) for one in some)
 
     def _added(
         self, asked: Iterable[tuple[Sequence[Choice], Sequence[Mapping[str, float]]]]
