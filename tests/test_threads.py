@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from rr_opt import threads
+from rr_opt import interrupt, threads
 
 
 def _squared(_: int = 0) -> list[int]:
@@ -18,3 +18,13 @@ def test_a_forked_child_has_its_own(monkeypatch):
     assert _squared() == [k * k for k in range(9)]
     with multiprocessing.get_context("fork").Pool(1) as pool:
         assert pool.apply_async(_squared, (0,)).get(timeout=30) == [k * k for k in range(9)]
+
+
+def test_after_an_interrupt_no_more_is_begun(monkeypatch):
+    assert threads.in_background(_squared).result(30) == _squared()
+    monkeypatch.setattr(interrupt, "_seen", True)
+    late = []
+    assert isinstance(
+        threads.in_background(lambda: late.append(1)).exception(30), KeyboardInterrupt
+    )
+    assert not late

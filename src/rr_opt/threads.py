@@ -6,6 +6,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import lru_cache
 from typing import TypeVar
 
+from rr_opt import interrupt
+
 Part = TypeVar("Part")
 Done = TypeVar("Done")
 
@@ -19,8 +21,16 @@ def in_threads(work: Callable[[Part], Done], parts: Sequence[Part]) -> list[Done
 
 
 def in_background(work: Callable[[], Done]) -> Future[Done]:
-    """work(), begun in a thread of its own as soon as a processor is free of such work."""
-    return _pool(os.getpid(), "background").submit(work)
+    """work(), begun in a thread of its own as soon as a processor is free of such work.
+
+    The process does not end before all of it has; after an interrupt no more is begun.
+    """
+
+    def unless_interrupted() -> Done:
+        interrupt.check()
+        return work()
+
+    return _pool(os.getpid(), "background").submit(unless_interrupted)
 
 
 @lru_cache(maxsize=2)

@@ -1,5 +1,6 @@
 """What is compiled computes what the virtual machine and NumPy compute, and is never needed."""
 
+import os
 from dataclasses import replace
 from shutil import which
 
@@ -190,8 +191,8 @@ def test_what_will_be_used_as_much_is_compiled_ahead(own_cache):
     used, ahead = twins()
     shoot.code_of(used, shoot._PAYS + 1)
     shoot.prepare([used, ahead], like=used)
-    code = shoot._begun[ahead].result()
-    assert used not in shoot._begun
+    code = shoot._begun[os.getpid(), ahead].result()
+    assert (os.getpid(), used) not in shoot._begun
     assert len(list(own_cache.glob("*.so"))) == 2
     # Its first step is stepped by what was compiled.
     assert code is not None
@@ -202,7 +203,7 @@ def test_nothing_is_compiled_ahead_for_little_use(own_cache):
     used, ahead = twins()
     shoot.code_of(used, shoot._FEW)
     shoot.prepare([ahead], like=used)
-    assert ahead not in shoot._begun
+    assert (os.getpid(), ahead) not in shoot._begun
     assert not list(own_cache.glob("*.so"))
 
 

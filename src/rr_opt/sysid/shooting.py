@@ -7,6 +7,7 @@ compiler, and then several runs are stepped at once. For derivatives see `sensit
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -107,12 +108,13 @@ def code_of(system: System, steps: int) -> Compiled | None:
     if not system.lasts:
         return None
     used = _used[system] = _used.get(system, 0) + steps
-    if system in _begun:
-        return _begun[system].result()
+    if ahead := _begun.get((os.getpid(), system)):
+        return ahead.result()
     return _compiled(system, make=used > _PAYS) if used > _FEW else None
 
 
-_begun: dict[System, Future[Compiled | None]] = {}
+_begun: dict[tuple[int, System], Future[Compiled | None]] = {}
+"""By process: a child that was forked would wait for its parent's thread."""
 
 
 def prepare(systems: Iterable[System], like: System) -> None:
@@ -121,14 +123,15 @@ def prepare(systems: Iterable[System], like: System) -> None:
     if _used.get(like, 0) <= _PAYS:
         return
     for one in systems:
-        if one.lasts and one not in _begun and _compiled(one, make=False) is None:
+        own = os.getpid(), one
+        if one.lasts and own not in _begun and _compiled(one, make=False) is None:
             try:
                 # Written here, as CasADi is not safe in threads.
                 source = _source(one)
             except NotImplementedError:
                 continue
             make = partial(found, source, *_sizes(one), make=True, key=_key(one))
-            _begun[one] = in_background(make)
+            _begun[own] = in_background(make)
 
 
 @lru_cache(maxsize=64)
