@@ -2,10 +2,11 @@
 
 import multiprocessing
 import os
+import threading
 
 import pytest
 
-from rr_opt import interrupt, threads
+from rr_opt import threads
 
 
 def _squared(_: int = 0) -> list[int]:
@@ -20,11 +21,11 @@ def test_a_forked_child_has_its_own(monkeypatch):
         assert pool.apply_async(_squared, (0,)).get(timeout=30) == [k * k for k in range(9)]
 
 
-def test_after_an_interrupt_no_more_is_begun(monkeypatch):
-    assert threads.in_background(_squared).result(30) == _squared()
-    monkeypatch.setattr(interrupt, "_seen", True)
-    late = []
-    assert isinstance(
-        threads.in_background(lambda: late.append(1)).exception(30), KeyboardInterrupt
-    )
-    assert not late
+def test_what_was_begun_is_waited_for_but_not_for_ever():
+    go = threading.Event()
+    begun = threads.in_background(lambda: go.wait(60) and _squared())
+    threads.finish(0.01)
+    assert not begun.done()
+    go.set()
+    threads.finish(60)
+    assert begun.result(0) == _squared()

@@ -2,11 +2,9 @@
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from functools import lru_cache
 from typing import TypeVar
-
-from rr_opt import interrupt
 
 Part = TypeVar("Part")
 Done = TypeVar("Done")
@@ -23,14 +21,20 @@ def in_threads(work: Callable[[Part], Done], parts: Sequence[Part]) -> list[Done
 def in_background(work: Callable[[], Done]) -> Future[Done]:
     """work(), begun in a thread of its own as soon as a processor is free of such work.
 
-    The process does not end before all of it has; after an interrupt no more is begun.
+    The process does not end before all of it has.
     """
+    begun = _pool(os.getpid(), "background").submit(work)
+    _unfinished.add(begun)
+    begun.add_done_callback(_unfinished.discard)
+    return begun
 
-    def unless_interrupted() -> Done:
-        interrupt.check()
-        return work()
 
-    return _pool(os.getpid(), "background").submit(unless_interrupted)
+_unfinished: set[Future] = set()
+
+
+def finish(seconds: float) -> None:
+    """Wait for what was begun in the background, but no longer than this."""
+    wait(_unfinished, seconds)
 
 
 @lru_cache(maxsize=2)

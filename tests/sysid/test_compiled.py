@@ -7,6 +7,7 @@ from shutil import which
 import numpy as np
 import pytest
 
+from rr_opt import interrupt
 from rr_opt.motion.dynamics import values_of
 from rr_opt.motion.floor_motion import floor_motion
 from rr_opt.sysid import compiled
@@ -216,3 +217,13 @@ def test_what_cannot_be_compiled_ahead_is_done_without(monkeypatch):
     (made,) = predict_all(ahead, [(drive, np.array(start), np.array(p))])
     (plain,) = predict_all(replace(ahead, lasts=False), [(drive, np.array(start), np.array(p))])
     np.testing.assert_array_equal(made.states, plain.states)
+
+
+@needs_compiler
+def test_nothing_is_compiled_ahead_after_an_interrupt(monkeypatch, own_cache):
+    used, ahead = twins()
+    shoot.code_of(used, shoot._PAYS + 1)
+    monkeypatch.setattr(interrupt, "_seen", True)
+    shoot.prepare([ahead], like=used)
+    assert isinstance(shoot._begun[os.getpid(), ahead].exception(30), KeyboardInterrupt)
+    assert len(list(own_cache.glob("*.so"))) == 1

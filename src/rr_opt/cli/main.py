@@ -102,7 +102,14 @@ def _others() -> dict[str, Any]:
     return {found.name: found for found in entry_points(group="rr_opt.verbs")}
 
 
+_LEAVING = 1.0
+"""s, in which compilers that were interrupted, too, leave nothing behind."""
+
+
 def _interrupted() -> Any:
+    from rr_opt.threads import finish
+
+    finish(_LEAVING)
     typer.echo(interrupt.MESSAGE, err=True)
     raise typer.Exit(EXIT_INTERRUPTED) from None
 

@@ -16,6 +16,7 @@ from functools import cached_property, lru_cache, partial
 import casadi as ca
 import numpy as np
 
+from rr_opt import interrupt
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays, source_file
 from rr_opt.sysid.compiled import Compiled, found, source_of
@@ -130,8 +131,13 @@ def prepare(systems: Iterable[System], like: System) -> None:
                 source = _source(one)
             except NotImplementedError:
                 continue
-            make = partial(found, source, *_sizes(one), make=True, key=_key(one))
-            _begun[own] = in_background(make)
+            _begun[own] = in_background(partial(_made, source, *_sizes(one), _key(one)))
+
+
+def _made(source: str, size: int, channels: int, key: str) -> Compiled | None:
+    # Nobody waits for it after an interrupt.
+    interrupt.check()
+    return found(source, size, channels, make=True, key=key)
 
 
 @lru_cache(maxsize=64)
