@@ -7,8 +7,8 @@ plants whose friction sets in over 2 mm/s and over a tenth of that, each predict
 the other gives an axle's force half as large or twice as large as it is. So in predictions u0 is a
 parameter, `onset`, to which the change of speed that the friction makes in 2 ms is added: with the
 steps of 3 ms at most that are taken with such forces, the slope at u = 0 is 1.5 over the step, half
-of what a Runge-Kutta step of order 4 tolerates. With more, the strong friction of a slow robot,
-which is inside the smoothed part for long, came out a fifth too small.
+of what a Runge-Kutta step of order 4 tolerates. With 5 ms, recordings of slow robots with strong
+friction, which are inside the smoothed part for long, seemed to disagree on its size.
 """
 
 from collections.abc import Mapping
