@@ -103,7 +103,7 @@ def _others() -> dict[str, Any]:
 
 
 _LEAVING = 1.0
-"""s, in which compilers that were interrupted, too, leave nothing behind."""
+"""s to wait for interrupted compilers, which then leave nothing behind in the cache."""
 
 
 def _interrupted() -> Any:

@@ -179,12 +179,10 @@ class Selection:
             self.best = best
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
-        """Whether one more effect is complete and predicts better than all alternatives. If not, or
-        if it takes two, it may imitate an effect that was not tried yet."""
+        """Whether one more effect is complete and predicts better than all alternatives. If not, it
+        may imitate an effect that was not tried yet."""
         best = _best(found)
-        if best is None or len(best.choices) > len(self.best.choices) + 1:
-            return False
-        if not self.complete(best):
+        if best is None or not self.complete(best):
             return False
         others = [one for one in found if one.effects != best.effects]
         return all(best.predicts_better(one) for one in (self.best, *others))
