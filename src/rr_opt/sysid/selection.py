@@ -16,6 +16,7 @@ from functools import cached_property
 from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import predicted
+from rr_opt.sysid.intervals import released
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
 from rr_opt.sysid.score_test import Score, scores, with_all
@@ -75,12 +76,13 @@ class Selection:
 
     def complete(self, candidate: Candidate) -> bool:
         """Whether its misfit is insignificant and, without effects, recordings agree on its
-        values."""
+        values, none of them bent by a wrong nominal value."""
         if not self.insignificant(candidate):
             return False
         if candidate.choices:
             return True
-        return constancy(candidate.fit, candidate.excess).probability > SETTINGS.named
+        fit = released(candidate.fit)
+        return constancy(fit, candidate.excess).probability > SETTINGS.named
 
     def insignificant(self, candidate: Candidate) -> bool:
         """Whether its misfit over whole runs is within the tolerance (`none` with effects,
