@@ -5,7 +5,9 @@ import pytest
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import first
 from rr_opt.sysid.constancy import constancy
+from rr_opt.sysid.intervals import released, wrong
 from rr_opt.sysid.selection import Selection
+from rr_opt.sysid.settings import SETTINGS
 from tests.sysid.made_up import with_effect
 
 HIDDEN = {
@@ -53,3 +55,13 @@ def test_a_wrong_value_is_no_missing_effect(name):
     base = first(model, range(len(model.runs)))
     assert constancy(base.fit, base.excess).probability < 0.01
     assert Selection(model, base).complete(base)
+
+
+def test_an_effect_is_likelier_than_many_wrong_values():
+    """Heavy wheels move the robot as other masses, inertias and lengths would."""
+    model = with_effect({"wheel_inertia.J": 1.5e-5}, ("wheel_inertia",), gaits=UNLIKE)
+    base = first(model, range(len(model.runs)))
+    search = Selection(model, base)
+    assert search.insignificant(base)
+    assert len(wrong(released(base.fit))) > SETTINGS.most_effects
+    assert search.run().effects == ("wheel_inertia",)

@@ -11,7 +11,9 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.sysid import estimation
+from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import Fit, FitProblem
+from rr_opt.sysid.intervals import released, wrong
 from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment
 from rr_opt.sysid.settings import SETTINGS
 
@@ -51,6 +53,15 @@ class Candidate:
     def excess(self) -> float:
         """Misfit of whole-run simulations beyond the noise, RMS in sigma."""
         return self.simulated.excess
+
+    @cached_property
+    def plausible(self) -> bool:
+        """Whether recordings agree on its values, and no more of these are wrong than may be.
+
+        Wrong ones are released first: what is believed of one bends others."""
+        fit = released(self.fit)
+        agree = constancy(fit, self.excess).probability > SETTINGS.named
+        return agree and len(wrong(fit)) <= SETTINGS.most_effects
 
     def advantage(self, other: Candidate) -> tuple[float, float]:
         """Gain in log predictive density over another candidate, nats, and its standard error."""

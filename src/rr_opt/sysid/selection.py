@@ -14,9 +14,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of
-from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import predicted
-from rr_opt.sysid.intervals import released
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
 from rr_opt.sysid.score_test import Score, scores, with_all
@@ -75,14 +73,8 @@ class Selection:
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
-        """Whether its misfit is insignificant and, without effects, recordings agree on its
-        values, none of them bent by a wrong nominal value."""
-        if not self.insignificant(candidate):
-            return False
-        if candidate.choices:
-            return True
-        fit = released(candidate.fit)
-        return constancy(fit, candidate.excess).probability > SETTINGS.named
+        """Whether its misfit is insignificant and, without effects, its values are plausible."""
+        return self.insignificant(candidate) and (bool(candidate.choices) or candidate.plausible)
 
     def insignificant(self, candidate: Candidate) -> bool:
         """Whether its misfit over whole runs is within the tolerance (`none` with effects,
@@ -113,12 +105,12 @@ class Selection:
         return predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also removes a good share of the other's misfit, and that misfit exceeds the
-        form error of the other's effects."""
+        """Whether it also removes a good share of the other's misfit, if that is significant, and
+        that misfit exceeds the form error of the other's effects."""
         return (
             self._better(candidate, other)
             and not self._close(other)
-            and candidate.accounts(other) > SETTINGS.accounted
+            and (self.insignificant(other) or candidate.accounts(other) > SETTINGS.accounted)
         )
 
     def _close(self, candidate: Candidate) -> bool:
@@ -177,7 +169,9 @@ class Selection:
         if not (alone and self.complete(alone)) and not self._settled(found):
             found += self._scored(promising, 2)
         best = _best(found)
-        if best and best.predicts_better(self.best) and best.advances(self.best):
+        if not best or not best.predicts_better(self.best):
+            return
+        if self.insignificant(self.best) or best.advances(self.best):
             self.best = best
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
