@@ -71,7 +71,8 @@ class Candidate:
 
     def accounts(self, other: Candidate) -> float:
         """Share of the other's excess misfit over whole runs (mean square) that it removes."""
-        return _explained(self.excess, other.excess)
+        # Of a misfit below the negligible level, noise may have left nothing.
+        return _explained(self.excess, max(other.excess, SETTINGS.negligible))
 
     def advances(self, other: Candidate) -> bool:
         """Whether it removes a good share of that misfit, or of the misfit in segments, where the

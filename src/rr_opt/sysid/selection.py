@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of
+from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of, weights
 from rr_opt.sysid.estimation import predicted
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
@@ -105,12 +105,12 @@ class Selection:
         return predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also removes a good share of the other's misfit, if that is significant, and
-        that misfit exceeds the form error of the other's effects."""
+        """Whether it also removes a good share of the other's misfit, and that misfit exceeds the
+        form error of the other's effects."""
         return (
             self._better(candidate, other)
             and not self._close(other)
-            and (self.insignificant(other) or candidate.accounts(other) > SETTINGS.accounted)
+            and candidate.accounts(other) > SETTINGS.accounted
         )
 
     def _close(self, candidate: Candidate) -> bool:
@@ -169,9 +169,7 @@ class Selection:
         if not (alone and self.complete(alone)) and not self._settled(found):
             found += self._scored(promising, 2)
         best = _best(found)
-        if not best or not best.predicts_better(self.best):
-            return
-        if self.insignificant(self.best) or best.advances(self.best):
+        if best and best.predicts_better(self.best) and best.advances(self.best):
             self.best = best
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
@@ -275,12 +273,19 @@ class Selection:
         ]
 
     def _simplest(self) -> Candidate:
-        """Of the candidates that predict about as well as the best, the one with the fewest
-        quantities."""
+        """Of the candidates that predict about as well as the best, one with the fewest effects,
+        then with the likeliest ones, then with the fewest quantities."""
         alike = [one for one in self.alike() if self.complete(one) or one is self.best]
-        return min(
-            (self.best, *alike), key=lambda one: (len(one.fit.problem.quantities), -one.elpd)
-        )
+        ended = [one for one in self.tried.values() if not one.given_up]
+        likely = dict.fromkeys((one.effects for one in ended), 0.0)
+        for one, weight in zip(ended, weights(ended), strict=True):
+            likely[one.effects] += weight
+
+        def rank(one: Candidate) -> tuple[float, ...]:
+            quantities = len(one.fit.problem.quantities)
+            return len(one.effects), -likely[one.effects], quantities, -one.elpd
+
+        return min((self.best, *alike), key=rank)
 
     def _backward(self, needed: Callable[[Candidate, Candidate], bool]) -> None:
         """Drop effects, or parts, that the full set can spare: two may be needed only jointly."""
