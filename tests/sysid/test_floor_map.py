@@ -58,10 +58,15 @@ def test_no_patch_gains_more_than_luck_where_there_is_none(on_plain_floor):
 
 def test_a_round_patch_is_found_without_a_fit_of_it(on_a_round_one):
     best = next(values for form, values in patches(*on_a_round_one) if form == 0)
-    for name in ("x", "y", "radius"):
-        assert best[f"floor_patch.{name}"] == pytest.approx(
-            ROUND_ONE[f"floor_patch.{name}"], abs=0.05
-        )
+    floor = floor_map(*on_a_round_one)
+
+    def shares(values):
+        of = [values[f"floor_patch.{name}"] for name in ("x", "y", "radius")]
+        return floor.at(ROUND.depth(of))
+
+    # The wheels cross only a part of it, so that other circles are the same patch to them.
+    found, true = shares(best), shares(ROUND_ONE)
+    assert found @ true > 0.98 * np.linalg.norm(found) * np.linalg.norm(true)
     # What all the floor has is bent towards it, so that the patch seems weaker.
     assert 2.5 < best["floor_patch.multiplier"] < 10
 

@@ -14,18 +14,24 @@ from rr_opt.sysid.verdict import Identification, remainder_of, wrong_values
 FORM, FIRST = 0.02, 100.0
 
 
-def predicts(left: float, gain: float) -> float:
-    """With what the answer leaves in a held-out run, and by how many nats it predicts that."""
-    runs = [SimpleNamespace(held_out=False), SimpleNamespace(held_out=True)]
+def predicts(
+    left: float, gain: float, explained: float = 0.0, form_error: float = 0.0, held: bool = True
+) -> float:
+    """With what the answer leaves in a held-out run, by how many nats it predicts that, how much of
+    it (RMS in sigma) its effects explain, and by how much machines differ from any model."""
+    runs = [SimpleNamespace(held_out=False), SimpleNamespace(held_out=held)]
+    problem = SimpleNamespace(samples=[10000.0, 10000.0], correlation_times=lambda _: 100.0)
     made: Any = SimpleNamespace(
         selection=SimpleNamespace(
-            base=SimpleNamespace(excess=FIRST), model=SimpleNamespace(runs=runs)
+            base=SimpleNamespace(excess=FIRST),
+            model=SimpleNamespace(runs=runs, form_error=form_error),
         ),
         best=SimpleNamespace(choices=("a",)),
         final=SimpleNamespace(excess=left),
-        everywhere=SimpleNamespace(predictive=[50.0, gain]),
+        everywhere=SimpleNamespace(predictive=[50.0, gain], fit=SimpleNamespace(problem=problem)),
         plain=SimpleNamespace(predictive=[0.0, 0.0]),
         _form_error=FORM,
+        _explained=[100.0, explained**2],
     )
     return Identification._predicts.fget(made)  # pyright: ignore
 
@@ -36,6 +42,18 @@ def predicts(left: float, gain: float) -> float:
 )
 def test_what_the_held_out_recordings_say(left, gain, likely):
     assert predicts(left, gain) == pytest.approx(likely, abs=1e-6)
+
+
+def test_they_say_less_the_more_machines_may_differ_in_them():
+    loss = -2 * SETTINGS.evidence
+    # Over 100 samples a correlation time, 0.1 sigma of either kind doubles the variance.
+    assert predicts(2.1, loss, form_error=0.1) == pytest.approx(0.5)
+    assert predicts(2.1, loss, explained=0.1 / FORM) == pytest.approx(0.5)
+    assert predicts(2.1, loss) < 0.01
+
+
+def test_nothing_is_said_where_none_is_held_out():
+    assert predicts(2.1, -100.0, held=False) == 1.0
 
 
 @pytest.mark.parametrize(("effects", "further"), [("a", 0), ("AB", 0), ("aB", 0), ("abC", 1)])

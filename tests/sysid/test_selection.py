@@ -4,6 +4,8 @@ import pytest
 
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import first
+from rr_opt.sysid.constancy import constancy
+from rr_opt.sysid.intervals import released, wrong
 from rr_opt.sysid.selection import Selection
 from tests.sysid.made_up import with_effect
 
@@ -42,3 +44,24 @@ def test_named(effect):
 def test_nothing_is_named_where_nothing_is_missing():
     model = with_effect({}, (), gaits=UNLIKE)
     assert Selection(model, first(model, range(len(model.runs)))).run().effects == ()
+
+
+@pytest.mark.parametrize("name", ["m1", "m2"])
+def test_a_wrong_value_is_no_missing_effect(name):
+    """What is believed of it bends others, in each recording differently."""
+    believed = with_effect({}, ()).nominal[name]
+    model = with_effect({name: 0.8 * believed}, (), gaits=UNLIKE)
+    base = first(model, range(len(model.runs)))
+    assert constancy(base.fit, base.excess).probability < 0.01
+    assert Selection(model, base).complete(base)
+
+
+@pytest.mark.parametrize(("J", "wrong_ones"), [(4e-6, 1), (1.5e-5, 4)])
+def test_an_effect_is_likelier_than_values_that_disagree_or_many_wrong_ones(J, wrong_ones):
+    """Heavy wheels move the robot as other masses, inertias and lengths would."""
+    model = with_effect({"wheel_inertia.J": J}, ("wheel_inertia",), gaits=UNLIKE)
+    base = first(model, range(len(model.runs)))
+    search = Selection(model, base)
+    assert search.insignificant(base)
+    assert len(wrong(released(base.fit))) == wrong_ones
+    assert search.run().effects == ("wheel_inertia",)

@@ -11,7 +11,9 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.sysid import estimation
+from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import Fit, FitProblem
+from rr_opt.sysid.intervals import released, wrong
 from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment
 from rr_opt.sysid.settings import SETTINGS
 
@@ -52,6 +54,15 @@ class Candidate:
         """Misfit of whole-run simulations beyond the noise, RMS in sigma."""
         return self.simulated.excess
 
+    @cached_property
+    def plausible(self) -> bool:
+        """Whether recordings agree on its values, and no more of these are wrong than may be.
+
+        Wrong ones are released first: what is believed of one bends others."""
+        fit = released(self.fit)
+        agree = constancy(fit, self.excess).probability > SETTINGS.named
+        return agree and len(wrong(fit)) <= SETTINGS.most_effects
+
     def advantage(self, other: Candidate) -> tuple[float, float]:
         """Gain in log predictive density over another candidate, nats, and its standard error."""
         gains = np.array([p - other.predictive[run] for run, p in self.predictive.items()])
@@ -60,7 +71,8 @@ class Candidate:
 
     def accounts(self, other: Candidate) -> float:
         """Share of the other's excess misfit over whole runs (mean square) that it removes."""
-        return _explained(self.excess, other.excess)
+        # Of a misfit below the negligible level, noise may have left nothing.
+        return _explained(self.excess, max(other.excess, SETTINGS.negligible))
 
     def advances(self, other: Candidate) -> bool:
         """Whether it removes a good share of that misfit, or of the misfit in segments, where the

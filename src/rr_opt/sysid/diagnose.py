@@ -172,7 +172,7 @@ def weighed(selection: Selection, best: Candidate, watch: Stopwatch) -> Identifi
     best = turned(model, best)
     with watch("looking for wrong values"):
         fit = settled(best.fit)
-        if selection.complete(best):
+        if selection.insignificant(best):
             fit = released(fit)
         best = Candidate(best.choices, fit)
     with watch("predicting every recording"):

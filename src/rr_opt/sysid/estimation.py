@@ -737,16 +737,19 @@ def initial(
 def whole_runs(fit: Fit) -> Fit:
     """The same quantities fitted by least squares over whole runs, or over windows as long as the
     machine can be predicted: how well the model predicts unaided."""
-    single, states = _whole(fit, fit.problem.by_run, fit.values)
-    # The misfit has to be known to a fraction of the negligible level, or of itself.
-    enough = SETTINGS.known * SETTINGS.negligible**2 * fit.samples
-    return solve(single, fit.values, states, tolerance=enough, relative=SETTINGS.known_share)
+    return _known(*_whole(fit, fit.problem.by_run, fit.values), fit.values)
 
 
 def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
     """Any runs, whole or in such windows, with these values; only initial states are fitted."""
     single, states = _whole(fit, runs, values)
-    return solve(replace(single, quantities=(), values=dict(values)), values, states)
+    return _known(replace(single, quantities=(), values=dict(values)), states, values)
+
+
+def _known(problem: FitProblem, states: States, values: Mapping[str, float]) -> Fit:
+    """The solution, its misfit known to a fraction of the negligible level, or of itself."""
+    enough = SETTINGS.known * SETTINGS.negligible**2 * sum(problem.samples.values())
+    return solve(problem, values, states, tolerance=enough, relative=SETTINGS.known_share)
 
 
 def _whole(

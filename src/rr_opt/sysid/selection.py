@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of
-from rr_opt.sysid.constancy import constancy
+from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of, weights
 from rr_opt.sysid.estimation import predicted
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
@@ -74,13 +73,8 @@ class Selection:
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
-        """Whether its misfit is insignificant and, without effects, recordings agree on its
-        values."""
-        if not self.insignificant(candidate):
-            return False
-        if candidate.choices:
-            return True
-        return constancy(candidate.fit, candidate.excess).probability > SETTINGS.named
+        """Whether its misfit is insignificant and, without effects, its values are plausible."""
+        return self.insignificant(candidate) and (bool(candidate.choices) or candidate.plausible)
 
     def insignificant(self, candidate: Candidate) -> bool:
         """Whether its misfit over whole runs is within the tolerance (`none` with effects,
@@ -279,12 +273,19 @@ class Selection:
         ]
 
     def _simplest(self) -> Candidate:
-        """Of the candidates that predict about as well as the best, the one with the fewest
-        quantities."""
+        """Of the candidates that predict about as well as the best, one with the fewest effects,
+        then with the likeliest ones, then with the fewest quantities."""
         alike = [one for one in self.alike() if self.complete(one) or one is self.best]
-        return min(
-            (self.best, *alike), key=lambda one: (len(one.fit.problem.quantities), -one.elpd)
-        )
+        ended = [one for one in self.tried.values() if not one.given_up]
+        likely = dict.fromkeys((one.effects for one in ended), 0.0)
+        for one, weight in zip(ended, weights(ended), strict=True):
+            likely[one.effects] += weight
+
+        def rank(one: Candidate) -> tuple[float, ...]:
+            quantities = len(one.fit.problem.quantities)
+            return len(one.effects), -likely[one.effects], quantities, -one.elpd
+
+        return min((self.best, *alike), key=rank)
 
     def _backward(self, needed: Callable[[Candidate, Candidate], bool]) -> None:
         """Drop effects, or parts, that the full set can spare: two may be needed only jointly."""

@@ -75,8 +75,8 @@ class Settings:
     stride: float = 3.0
     tolerance: float = 0.001
     search_tolerance: float = 0.05
-    known: float = 0.01
-    known_share: float = 0.0002
+    known: float = 0.05
+    known_share: float = 0.01
     trial_runs: int = 2
     trial_starts: int = 6
     trial_steps: int = 4

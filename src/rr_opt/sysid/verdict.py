@@ -16,7 +16,7 @@ from scipy.special import expit
 from rr_opt.formatting import words_of
 from rr_opt.messages import listed
 from rr_opt.sysid.candidates import Candidate, weights
-from rr_opt.sysid.constancy import Constancy, constancy
+from rr_opt.sysid.constancy import Constancy, constancy, overdispersion
 from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
 from rr_opt.sysid.intervals import estimates, instead_of, named, wrong
@@ -127,14 +127,19 @@ class Identification:
     @property
     def _predicts(self) -> float:
         """Probability of the answer given the held-out recordings, with prior log odds of the
-        evidence that an effect needs. Not tested if their misfit is within the form error."""
-        if self.final.excess <= self._form_error * self.selection.base.excess:
+        evidence that an effect needs. Not tested if their misfit is within the form error; a
+        recording says less the more machines may differ in it from the effect's model, or any."""
+        model, problem = self.selection.model, self.everywhere.fit.problem
+        held = [k for k, run in enumerate(model.runs) if run.held_out]
+        slight = self.final.excess <= self._form_error * self.selection.base.excess
+        if slight or not (held and self.best.choices):
             return 1.0
-        runs = self.selection.model.runs
         own, other = self.everywhere.predictive, self.plain.predictive
-        gains = [own[k] - other[k] for k, run in enumerate(runs) if run.held_out]
-        odds = SETTINGS.evidence + sum(gains)
-        return float(expit(odds)) if gains and self.best.choices else 1.0
+        odds = SETTINGS.evidence
+        for k in held:
+            off = self._form_error**2 * self._explained[k] + model.form_error**2
+            odds += (own[k] - other[k]) / overdispersion(problem, k, off)
+        return float(expit(odds))
 
     @property
     def _form_errors(self) -> Mapping[str, float]:
@@ -147,12 +152,16 @@ class Identification:
         return max(self._form_errors.values(), default=math.inf)
 
     @cached_property
+    def _explained(self) -> Mapping[int, float]:
+        """By run, the mean square in sigma that the answer's effects explain."""
+        return {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
+
+    @cached_property
     def constancy(self) -> Constancy:
         """How well recordings agree on the answer's values."""
-        explained = {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
         # With effects, their own form errors count instead.
         left = 0.0 if self.best.choices else self.everywhere.excess
-        return constancy(self.everywhere.fit, left, explained, self._form_errors)
+        return constancy(self.everywhere.fit, left, self._explained, self._form_errors)
 
     @property
     def shown(self) -> tuple[Choice, ...]:

@@ -33,6 +33,8 @@ _PARTS, _SIZES = (1.0, 0.5, 0.25), (0.25, 1.0, 4.0)
 """Shares of a simpler form's first quantity, and multiples of a new one's usual size."""
 _DIFFERENCE = 1e-4
 """Relative step of a difference quotient."""
+_KNOWN = 1e-4
+"""To what share the misfit is known, and the values: sets are told apart by several nats."""
 _SCANNED = 3
 """Runs on which initial values are compared."""
 _OPEN = 4
@@ -233,6 +235,8 @@ def _fitted(
             np.clip(u, low, high),
             slopes,  # pyright: ignore[reportArgumentType]
             bounds=(low, high + 1e-12),
+            ftol=_KNOWN,
+            xtol=_KNOWN,
             max_nfev=12,
         ).x
     values = valued(u)

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from rr_opt.array import Array
@@ -32,6 +31,9 @@ _MOMENTS = 50
 _SAMPLES = 5
 """Fewest samples in a moment."""
 
+_POINTS = 4
+"""Places of a wheel in a moment, from which the share of it on a patch is taken."""
+
 _LEAST, _MOST = 0.02, 100.0
 """Range of a patch's drag multiplier."""
 
@@ -46,14 +48,13 @@ Depth = Callable[[Array, Array], Array]
 class FloorMap:
     """The inputs of all wheels in all moments, a moment's four wheels side by side, and their cost.
 
-    places   of the wheels (2, 4, n), m;  begins  the sample in which each moment begins (moments,)
+    places   of the wheels (2, moments, 4, points of a moment), m
     slope    (4 moments,), gradient by shares of drag, everything else fitted
     roots    (segments, r, 4 moments of a segment): roots' roots are second derivatives; refitting
              the parameters reduces them by onto' inverse onto, with `onto` (nq, 4 moments)
     """
 
     places: Array
-    begins: NDArray[np.int_]
     slope: Array
     roots: Array
     onto: Array
@@ -61,9 +62,7 @@ class FloorMap:
 
     def at(self, depth: Depth) -> Array:
         """The share of each moment for which each wheel is on a patch (4 moments,)."""
-        inside = np.tanh(depth(*self.places) / BORDER)
-        whole = np.add.reduceat(inside, self.begins, axis=1)
-        return (1 + whole / np.diff(self.begins, append=inside.shape[1])).T.ravel() / 2
+        return (1 + np.tanh(depth(*self.places) / BORDER).mean(-1).ravel()) / 2
 
     def roughly(self, depth: Depth) -> Array:
         """The same, from the wheels' places in the middle of the moments."""
@@ -72,8 +71,7 @@ class FloorMap:
     @cached_property
     def _middles(self) -> Array:
         """The wheels' places in the middle of the moments (2, 4 moments)."""
-        ends = np.append(self.begins[1:], self.places.shape[2])
-        return self.places[:, :, (self.begins + ends) // 2].transpose(0, 2, 1).reshape(2, -1)
+        return self.places[..., _POINTS // 2].reshape(2, -1)
 
     def gains(self, shares: Array) -> tuple[Array, Array]:
         """Gains of patches in chi-square, each at its best multiplier, and that; (patches,).
@@ -119,17 +117,21 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     # Inputs belong to one segment each; the parameters, which all share, are fitted.
     inverse = np.asarray(np.linalg.pinv(shared, hermitian=True), float)
     across = np.hstack(onto)
-    sizes = [one.t.size for one in along]
-    firsts = np.cumsum([0, *sizes[:-1]])
-    begins = [first + cut(n, count)[:-1] for first, n in zip(firsts, sizes, strict=True)]
     return FloorMap(
-        np.concatenate([one.places.transpose(1, 0, 2) for one in along], axis=2),
-        np.concatenate(begins),
+        np.concatenate([_points(one, count) for one in along], axis=1),
         np.concatenate(slopes) - across.T @ (inverse @ g),
         _roots(np.array(bends)),
         across,
         inverse,
     )
+
+
+def _points(along: Along, count: int) -> Array:
+    """Where the wheels were in each moment of a segment (2, count, 4, points), m."""
+    ends = cut(along.t.size, count)
+    shares = (np.arange(_POINTS) + 0.5) / _POINTS
+    samples = (ends[:-1, None] + np.diff(ends)[:, None] * shares).astype(int)
+    return along.places[:, :, samples].transpose(1, 2, 0, 3)
 
 
 def _roots(squares: Array) -> Array:
@@ -217,13 +219,18 @@ def _unlike(patches: Iterable[Array], most: int) -> list[int]:
 
 
 def _moved(floor: FloorMap, shape: Shape, one: Array, size: float) -> Array:
-    """The patch refined to a local maximum of its gain."""
+    """The patch refined to about a local maximum of its gain: a fit starts there."""
     around = np.vstack([one, one + size / 2 * np.eye(one.size)])
     best = minimize(
         lambda at: -float(floor.gains(floor.at(shape.depth(at))[None])[0][0]),
         one,
         method="Nelder-Mead",
-        options={"maxfev": _MOVES, "initial_simplex": around},
+        options={
+            "maxfev": _MOVES,
+            "initial_simplex": around,
+            "xatol": BORDER,
+            "fatol": SETTINGS.evidence,
+        },
     )
     return np.asarray(best.x)
 
