@@ -737,7 +737,8 @@ def initial(
 def whole_runs(fit: Fit) -> Fit:
     """The same quantities fitted by least squares over whole runs, or over windows as long as the
     machine can be predicted: how well the model predicts unaided."""
-    return _known(*_whole(fit, fit.problem.by_run, fit.values), fit.values)
+    single, states = _whole(fit, fit.problem.by_run, fit.values)
+    return _known(single, states, fit.values, SETTINGS.known_share)
 
 
 def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
@@ -746,10 +747,13 @@ def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit
     return _known(replace(single, quantities=(), values=dict(values)), states, values)
 
 
-def _known(problem: FitProblem, states: States, values: Mapping[str, float]) -> Fit:
-    """The solution, its misfit known to a fraction of the negligible level, or of itself."""
+def _known(
+    problem: FitProblem, states: States, values: Mapping[str, float], relative: float = 0.0
+) -> Fit:
+    """The solution, its misfit known to a fraction of the negligible level, or to a share of
+    itself."""
     enough = SETTINGS.known * SETTINGS.negligible**2 * sum(problem.samples.values())
-    return solve(problem, values, states, tolerance=enough, relative=SETTINGS.known_share)
+    return solve(problem, values, states, tolerance=enough, relative=relative)
 
 
 def _whole(
