@@ -261,6 +261,12 @@ class Selection:
                 if again.elpd > self.best.elpd:
                     self.best = again
 
+    @property
+    def weighted(self) -> list[tuple[Candidate, float]]:
+        """The candidates whose fits ended, with their predictive weights."""
+        ended = [one for one in self.tried.values() if not one.given_up]
+        return list(zip(ended, weights(ended).tolist(), strict=True))
+
     def alike(self) -> list[Candidate]:
         """The candidates that predict about as well as the best."""
         return [
@@ -276,14 +282,11 @@ class Selection:
         """Of the candidates that predict about as well as the best, one with the fewest effects,
         then with the likeliest ones, then with the fewest quantities."""
         alike = [one for one in self.alike() if self.complete(one) or one is self.best]
-        ended = [one for one in self.tried.values() if not one.given_up]
-        likely = dict.fromkeys((one.effects for one in ended), 0.0)
-        for one, weight in zip(ended, weights(ended), strict=True):
-            likely[one.effects] += weight
+        weighted = self.weighted
 
         def rank(one: Candidate) -> tuple[float, ...]:
-            quantities = len(one.fit.problem.quantities)
-            return len(one.effects), -likely[one.effects], quantities, -one.elpd
+            likely = sum(w for other, w in weighted if other.effects == one.effects)
+            return len(one.effects), -likely, len(one.fit.problem.quantities), -one.elpd
 
         return min((self.best, *alike), key=rank)
 

@@ -17,9 +17,8 @@ class Settings:
     tolerance             expected gain of a step, in nats of deviance, below which the fit has
                           converged: its values are within a thirtieth of a standard deviation
     search_tolerance      the same for candidates: a hundredth of what counts as evidence
-    known                 fits and predictions of whole runs stop once their misfit is known to
-                          this share of the negligible level,
-    known_share           or fits, of itself: slow creep is not followed any further
+    known                 share of the negligible level to which misfits of whole runs are known
+    known_share           share of itself to which that of a fit is: slow creep is not followed
     trial_runs            number of runs, the worst explained ones, on which guesses are tried
     trial_starts          number of guesses kept after one Gauss-Newton step
     trial_steps           further steps taken from these: a narrow minimum shows late

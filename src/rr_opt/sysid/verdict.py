@@ -15,7 +15,7 @@ from scipy.special import expit
 
 from rr_opt.formatting import words_of
 from rr_opt.messages import listed
-from rr_opt.sysid.candidates import Candidate, weights
+from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.constancy import Constancy, constancy, overdispersion
 from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
@@ -48,17 +48,19 @@ class Identification:
     after: Sequence[Dependence] = ()
 
     @cached_property
+    def _weighted(self) -> list[tuple[Candidate, float]]:
+        return self.selection.weighted
+
+    @cached_property
     def _ended(self) -> list[Candidate]:
-        return [one for one in self.selection.tried.values() if not one.given_up]
+        return [one for one, _ in self._weighted]
 
     @cached_property
     def confidences(self) -> Mapping[str, float]:
         """Of each effect: the predictive weight of all candidates that have it, times the
         probability that the answer is no imitation."""
-        tried = self._ended
-        own = list(zip(weights(tried), tried, strict=True))
         return {
-            name: float(self.sound * sum(w for w, one in own if name in one.effects))
+            name: self.sound * sum(w for one, w in self._weighted if name in one.effects)
             for name in self.best.effects
         }
 
@@ -167,14 +169,12 @@ class Identification:
     def shown(self) -> tuple[Choice, ...]:
         """The effects that are more likely missing than not: each of them, or another one that is
         indistinguishable from it."""
-        tried, alike = self._ended, self.selection.alike()
-        own = list(zip(weights(tried), tried, strict=True))
-        return tuple(
-            c
-            for c in self.best.choices
-            if self.sound * sum(w for w, one in own if c.name in one.effects or one in alike)
-            > SETTINGS.named
-        )
+        alike = self.selection.alike()
+
+        def likely(name: str) -> float:
+            return sum(w for one, w in self._weighted if name in one.effects or one in alike)
+
+        return tuple(c for c in self.best.choices if self.sound * likely(c.name) > SETTINGS.named)
 
     @property
     def explained(self) -> bool:
