@@ -29,16 +29,18 @@ KEPT = 1e-8
 
 
 class _Care(NamedTuple):
-    """phases of a cycle; tolerance and iterations of a climb, and its number of restarts, as the
-    limiting peaks can change along it."""
+    """phases of a cycle; iterations of a climb, and its number of restarts, as the limiting peaks
+    can change along it; tolerance, by whether friction is viscous, as kinks end any climb that asks
+    for more."""
 
     phases: int
-    tolerance: float
     iterations: int
     repeats: int
+    tolerance: dict[bool, float]
 
 
-_ROUGH, _FINE = _Care(PHASES // 2, 1e-6, 30, 1), _Care(2 * PHASES, 1e-10, 100, 4)
+_ROUGH = _Care(PHASES // 2, 30, 1, {True: 1e-6, False: 1e-6})
+_FINE = _Care(2 * PHASES, 100, 4, {True: 1e-10, False: 1e-8})
 _SETTLED, _STEPS, _LONGEST = 1e-9, 5, 0.01
 _AHEAD = 1e-6
 """Least V . E/|V|: at 0 a gait would go neither forward nor backward."""
@@ -68,12 +70,12 @@ def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = F
 
     care = _ROUGH if rough else _FINE
     local = _Local(problem, np.asarray(start, float), aim, care.phases)
+    options = {"ftol": care.tolerance[local.viscous], "maxiter": care.iterations}
     z = local.first
     for _ in range(care.repeats if len(z) else 0):
         end = minimize(
             local.cost, z, jac=local.cost_slope, bounds=[(0.0, 1.0)] * len(z),
-            constraints=local.constraints, method="SLSQP",
-            options={"ftol": care.tolerance, "maxiter": care.iterations},
+            constraints=local.constraints, method="SLSQP", options=options,
         )  # fmt: skip
         there = np.clip(end.x, 0.0, 1.0)
         if not local.settles(there):
@@ -111,7 +113,8 @@ class _Local:
         )  # fmt: skip
         ends = np.array([(inside[name].low, inside[name].high) for name in DECISIONS])
         self._low, self._span = ends[:, 0], ends[:, 1] - ends[:, 0]
-        self._step = _STEP[model_of(problem.robot).viscous]
+        self.viscous = model_of(problem.robot).viscous
+        self._step = _STEP[self.viscous]
         self.first = np.clip((start - self._low)[self._free] / self._span[self._free], 0.0, 1.0)
         self._unit, self._phases = 1.0, phases
         self._known: dict[bytes, tuple[Array, Array]] = {}
