@@ -405,22 +405,27 @@ class DriveProgram:
         return self._fastest(x, step, _HASTY)
 
     def hurried(
-        self, found: FoundDrive, step: Callable[[], None], patience: int = _HASTY
+        self,
+        found: FoundDrive,
+        step: Callable[[], None],
+        patience: int = _HASTY,
+        worth: float = _WORTH,
     ) -> FoundDrive:
-        """A drive after rounds of SQP, until they gain little or it is an optimum."""
+        """A drive after rounds of SQP, until it is an optimum or a round gains less than is worth
+        another."""
         for _ in range(_ROUNDS):
             if found.ease == 1 and self._prices(found)[1] < _STATIONARY:
                 break
             after = self._fastest(found.x, step, patience)
             better = after.rank() < found.rank()
             gain, found = 1 - after.cost / found.cost, after if better else found
-            if not better or gain < _WORTH:
+            if not better or gain < worth:
                 break
         return found
 
     def solve(self, found: FoundDrive, step: Callable[[], None]) -> SolvedDrive:
         """The local optimum from a feasible drive."""
-        found = self.hurried(found, step, len(found.x))
+        found = self.hurried(found, step, len(found.x), worth=0.0)
         look = found.look
         worst = int(np.argmin(look.values))
         pieces = tuple(piece for stage in self.stages for piece in [stage.leg.piece] * 2)
