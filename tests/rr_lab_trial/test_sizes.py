@@ -9,6 +9,7 @@ from rr_lab.trial.statistics import (
     held_out,
     intervals,
     quantiles,
+    reliability,
     remainders,
     uniformity,
 )
@@ -66,6 +67,25 @@ def test_remainders_by_kind():
     cases = [*(case(NULL, one) for one in claims), case(NULL, None)]
     cases.append(single(DRAG, said("consistent")))
     assert remainders(cases) == {"null": {"none": 1, "small": 1, "large": 1, "share": 0.4}}
+
+
+def test_confidences_are_compared_with_how_often_the_name_is_right():
+    cases = [
+        single(DRAG, said("missing_physics", DRAG, sure=0.9)),
+        single(DRAG, said("missing_physics", SLIP, sure=0.88)),
+        # One of both is right, and so is a name that cannot be told from the hidden one.
+        single(DRAG, said("missing_physics", DRAG, SLIP, sure=0.6)),
+        single(DRAG, said("missing_physics", DRY, sure=0.7, groups=[(DRAG, DRY)])),
+        case(NULL, said("parameters", "m1", sure=0.7)),
+        case(NULL, said("consistent")),
+        case(NULL, None),
+    ]
+    table = reliability(cases)
+    assert {band: (rate.count, rate.total) for band, (_, rate) in table.items()} == {
+        "0.5 to 0.7": (2, 4),
+        "0.85 to 1": (1, 2),
+    }
+    assert table["0.5 to 0.7"][0] == pytest.approx(0.65)
 
 
 def test_quantiles_of_nothing():

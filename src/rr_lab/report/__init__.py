@@ -207,6 +207,13 @@ class Proof(Result):
                 "all": covered.pop("all", Rate(0, 0).record),
                 "quantities": covered,
             },
+            "reliability": {
+                "definition": _SAYS["reliability"],
+                "bands": {
+                    band: {"stated": stated, **rate.record}
+                    for band, (stated, rate) in statistics.reliability(cases).items()
+                },
+            },
             "held_out": {"definition": _SAYS["held_out"], "kinds": statistics.held_out(cases)},
             "remainder": {"definition": _SAYS["remainder"], "kinds": statistics.remainders(cases)},
             "time": {
@@ -242,6 +249,10 @@ class Proof(Result):
                  for name, rate in by_name.items()]),
             _section("Coverage of the 95 % intervals", "coverage", ("quantity", "count", SHARE),
                 [(name, *_cells(rate)) for name, rate in covered.items()]),
+            _section("Reliability of the confidences", "reliability",
+                ("confidence", "mean", "right", SHARE),
+                [(band, number(stated, 2), *_cells(rate))
+                 for band, (stated, rate) in statistics.reliability(cases).items()]),
             _section("Held-out error (medians)", "held_out",
                 ("kind", "cases", "nominal", "re-fitted", "corrected",
                  "corrected, 90th percentile"),

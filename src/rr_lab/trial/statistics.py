@@ -1,11 +1,13 @@
 """Counts and statistics over the cases of a trial.
 
 The counts, which `texts.toml` defines in words, with their intervals; the confusion matrix; the
-coverage of intervals, p-values, held-out errors, remainders and times.
+coverage of intervals, the reliability of confidences, p-values, held-out errors, remainders and
+times.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import tomllib
 from collections import Counter
@@ -107,6 +109,26 @@ def coverage(every: Sequence[Interval]) -> dict[str, Rate]:
         for name in sorted({one.quantity for one in every})
     }
     return {"all": Rate.of(one.covers for one in every), **by_quantity} if every else {}
+
+
+_BANDS = (0.0, 0.5, 0.7, 0.85, 1.0)
+"""Edges of the bands in which confidences are counted: they crowd at 0.7 and 0.9."""
+
+
+def reliability(cases: Iterable[Case]) -> dict[str, tuple[float, Rate]]:
+    """By band of confidence: the mean confidence of the names in it, and how many are right."""
+    named = [
+        (one.confidence, one.name not in case.extra)
+        for case in cases
+        for one in (case.claim.named if case.claim else ())
+    ]
+    table = {}
+    for low, high in itertools.pairwise(_BANDS):
+        own = [(stated, right) for stated, right in named if low < stated <= high]
+        if own:
+            mean = float(np.mean([stated for stated, _ in own]))
+            table[f"{low:g} to {high:g}"] = mean, Rate.of(right for _, right in own)
+    return table
 
 
 FEWEST = 8
