@@ -59,6 +59,13 @@ def test_why_nothing_is_named_is_said(found):
     assert why not in summary_of(found, doubt=why)
 
 
+def test_what_looks_alike_is_not_ruled_out(found):
+    named = replace(found.findings[0], lookalikes=("a cable", "a stone in a wheel"))
+    text = summary_of(replace(found, findings=(named,)))
+    assert "Not ruled out: a cable or a stone in a wheel. " in text
+    assert "ruled out" not in summary_of(found)
+
+
 @pytest.mark.parametrize(("off", "said"), [(0.05, "50.0 mm"), (0.0, "less than 0.1 mm")])
 def test_a_place_is_never_said_to_be_off_by_nothing(off, said):
     recorded = np.zeros((50, 4))

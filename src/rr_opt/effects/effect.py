@@ -110,6 +110,7 @@ class Effect:
     forms               which parameters are fitted together; without any, all of them
     form_error          relative deviation of real machines from this model of it: larger for
                         contacts and stops, for which many laws exist
+    lookalikes          what is not in the catalogue and moves a robot much as this does
     """
 
     name: str
@@ -130,6 +131,7 @@ class Effect:
     candidate: bool = True
     forms: tuple[tuple[str, ...], ...] = ()
     form_error: float = 0.02
+    lookalikes: tuple[str, ...] = ()
 
     def actuated(
         self,

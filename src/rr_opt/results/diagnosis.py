@@ -277,8 +277,7 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
 
 def _finding(finding: Finding, verdict: str) -> Iterator[doc.Fact]:
     if verdict != "parameters":
-        minor = ", minor" if finding.minor else ""
-        head = f"confidence {finding.confidence:.2f}, explains {tables.share_text(finding)}{minor}"
+        head = f"confidence {finding.confidence:.2f}, explains {tables.share_text(finding)}"
         yield doc.Fact(tables.candidate_words([finding.name]), head)
     for name, value in finding.parameters.items():
         yield doc.Fact(f"  {name}", tables.value_text(value))

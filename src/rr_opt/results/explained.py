@@ -155,7 +155,7 @@ def _finding(finding: Finding, of_robot: bool) -> dict[str, Any]:
     """An effect; a parameter of the robot also has its value next to its name."""
     parameters = {name: _estimate(each) for name, each in finding.parameters.items()}
     return {
-        **picked(finding, "name confidence removes minor"),
+        **picked(finding, "name confidence removes lookalikes"),
         **(parameters.get(finding.name, {}) if of_robot else {}),
         "parameters": parameters,
     }

@@ -41,14 +41,14 @@ class Finding:
 
     confidence  0 to 1, against the best explanation without it
     removes     share of the held-out misfit that it removes, 0 to 1
-    minor       it is real, but removes little
+    lookalikes  what is not in the catalogue and moves a machine much as it does
     """
 
     name: str
     confidence: float
     parameters: Mapping[str, Estimate]
     removes: float
-    minor: bool = False
+    lookalikes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -254,7 +254,10 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
         if rivals and found.verdict in ("missing_physics", "parameters")
         else ""
     )
+    alike = dict.fromkeys(other for one in found.findings for other in one.lookalikes)
+    not_excluded = f"Not ruled out: {listed(alike, 'or')}." if alike else ""
     doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)
     plan = found.next_experiment.sentence if found.next_experiment and doubtful else ""
     why = doubt if found.verdict == "unexplained" else ""
-    return " ".join(part for part in (opening, tie, why, misfit, remains, plan) if part)
+    every = (opening, tie, not_excluded, why, misfit, remains, plan)
+    return " ".join(part for part in every if part)

@@ -68,6 +68,7 @@ class EffectInfo:
                 score test can detect it
     upstream    it changes the machine's drive, which is recorded separately
     form_error  relative deviation of machines from this model of the effect
+    lookalikes  what is not in the catalogue and moves a machine much as it does
     """
 
     name: str
@@ -78,6 +79,7 @@ class EffectInfo:
     smooth: bool = True
     upstream: bool = False
     form_error: float = 0.02
+    lookalikes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, order=True)

@@ -230,7 +230,8 @@ def findings(result: Identification) -> tuple[Finding, ...]:
         if not rest:
             removes = 1.0 - result.share
         values = named(result.best.fit, choice.name)
-        out.append(Finding(choice.name, result.confidences[choice.name], values, removes))
+        others = result.selection.model.catalogue[choice.name].lookalikes
+        out.append(Finding(choice.name, result.confidences[choice.name], values, removes, others))
     return tuple(sorted(out, key=lambda one: -one.removes))
 
 
