@@ -80,6 +80,14 @@ class Candidate:
         in_segments = _explained(self.fit.excess, other.fit.excess)
         return in_segments > SETTINGS.accounted or self.accounts(other) > SETTINGS.accounted
 
+    def sacrifices(self, other: Candidate) -> bool:
+        """Whether it explains a run worse, by more than its noise, than another one that lacks some
+        of its effects. Its best fit would not, but robust losses let a search give up a run."""
+        before = other.fit.evidences
+        return any(
+            e.excess > before[run].excess + e.samples for run, e in self.fit.evidences.items()
+        )
+
     def predicts_better(self, other: Candidate) -> bool:
         """Whether the predictive evidence is enough to prefer it."""
         if self.given_up:
@@ -120,11 +128,8 @@ def fitted(
     rival    the fit to beat: one that will not beat it is stopped early
     """
     ordered = tuple(sorted(choices))
-    names = tuple(one.name for one in ordered)
-    quantities = quantities_of(model, ordered)
-    problem = FitProblem(
-        model, names, quantities, parent.problem.segments, parent.problem.values, parent.problem.q
-    )
+    problem = _problem(model, ordered, parent)
+    names, quantities = problem.effects, problem.quantities
     plain = {q.name: q.centre for q in quantities}
     kept = {k: v for k, v in parent.values.items() if k in plain}
     unbent = {**kept, **{q.name: q.centre for q in model.parameters}}
@@ -156,6 +161,22 @@ def fitted(
     enough = rival.deviance if rival else math.inf
     fit = estimation.fitted(problem, best.values, begun_with, enough=enough, tolerance=tolerance)
     return Candidate(ordered, fit, not fit.converged and fit.deviance > enough)
+
+
+def continued(model: Model, choices: Sequence[Choice], nested: Fit) -> Candidate:
+    """Fit a set of effects, starting from the fit, to the same runs, of a part of them."""
+    ordered = tuple(sorted(choices))
+    problem = _problem(model, ordered, nested)
+    values = {q.name: nested.values.get(q.name, q.centre) for q in problem.quantities}
+    states = _converted(model, nested, problem.effects, values)
+    tolerance = SETTINGS.search_tolerance
+    return Candidate(ordered, estimation.fitted(problem, values, states, tolerance=tolerance))
+
+
+def _problem(model: Model, choices: Sequence[Choice], parent: Fit) -> FitProblem:
+    """To fit a set of effects to the segments of another fit."""
+    own, names = parent.problem, tuple(one.name for one in choices)
+    return FitProblem(model, names, quantities_of(model, choices), own.segments, own.values, own.q)
 
 
 def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:

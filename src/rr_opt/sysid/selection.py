@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of, weights
+from rr_opt.sysid.candidates import Candidate, continued, first, fitted, polished, quantities_of, weights
 from rr_opt.sysid.estimation import predicted
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
@@ -130,18 +130,23 @@ class Selection:
         if key not in self.tried:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
             rival = min((one.fit for one in self.tried.values()), key=lambda fit: fit.deviance)
-            begun = [*guesses, *self._nested(key)]
-            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, begun, rival)
+            begun, nested = [*guesses], self._nested(key)
+            if nested:
+                begun.append({q: nested.fit.values[q] for q in nested.fit.problem.names})
+            made = fitted(self.model, key, (parent or self.best).fit, begun, rival)
+            if nested and not made.given_up and made.sacrifices(nested):
+                again = continued(self.model, key, nested.fit)
+                made = min(made, again, key=lambda one: one.fit.deviance)
+            self.tried[key] = made
         return self.tried[key]
 
-    def _nested(self, key: Sequence[Choice]) -> Sequence[Mapping[str, float]]:
-        """Values of the best candidate that is nested in this one, so that it fits no worse."""
+    def _nested(self, key: Sequence[Choice]) -> Candidate | None:
+        """The best candidate that is nested in this one, which therefore fits no worse."""
         names = {q.name for q in quantities_of(self.model, key)}
         nested = [
             one for one in self.tried.values() if one.choices and names > set(one.fit.problem.names)
         ]
-        best = min(nested, key=lambda one: one.fit.deviance, default=None)
-        return [{q: best.fit.values[q] for q in best.fit.problem.names}] if best else []
+        return min(nested, key=lambda one: one.fit.deviance, default=None)
 
     def drive(self) -> None:
         """Try effects of the drive, from its own recording."""
