@@ -13,7 +13,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from rr_opt.sysid.candidates import Candidate, continued, first, fitted, polished, quantities_of, weights
+from rr_opt.sysid.candidates import (
+    Candidate,
+    continued,
+    first,
+    fitted,
+    polished,
+    quantities_of,
+    weights,
+)
 from rr_opt.sysid.estimation import predicted
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
