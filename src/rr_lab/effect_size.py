@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from rr_lab.case import EXACT, Case, Plan, driven, fine_enough, motion_of, stream
-from rr_lab.effects import effect_named, rig_with
+from rr_lab.effects import effect_named
 from rr_lab.run import Motion, captured
 from rr_opt.array import Array
 from rr_opt.model.parameters import parameters_of, with_parameters
@@ -42,7 +42,8 @@ def _seen(motion: Motion, tracked: Sequence[float] = (0.0, 0.0)) -> Array:
 
 @dataclass(frozen=True)
 class NominalRun:
-    """A nominal run, (4, n) each: its path, and its sensitivity to the initial speed, per m/s."""
+    """A run to compare others with, (4, n) each: its path, and its sensitivity to the initial speed,
+    per m/s."""
 
     path: Array
     change: Array
@@ -50,11 +51,16 @@ class NominalRun:
 
     @classmethod
     def of(cls, case: Case, plan: Plan, step: float = COARSE) -> NominalRun:
-        """Drive the nominal robot twice."""
+        """Drive the case's robot, with its effects, twice."""
         sigma = np.array([case.noise.of(channel) for channel in CHANNELS])
-        rig = rig_with(case.nominal)
         base, nudged = (
-            _seen(driven(case.engine, rig, plan.gait, replace(plan.conditions, nudge=nudge), step))
+            _seen(
+                driven(
+                    *(case.engine, case.rig, plan.gait),
+                    *(replace(plan.conditions, nudge=nudge), step),
+                ),
+                case.rig.tracked,
+            )
             for nudge in (0.0, SPEED_NUDGE)
         )
         return cls(base, (nudged - base) / SPEED_NUDGE, sigma[:, None])
@@ -83,7 +89,8 @@ class EffectSize:
     @classmethod
     def of(cls, case: Case, count: int | None = None) -> EffectSize:
         """On all runs of a case, or on the first `count`."""
-        return cls(tuple((plan, NominalRun.of(case, plan)) for plan in case.plans[:count]))
+        nominal = replace(case, robot=case.nominal, effects=())
+        return cls(tuple((plan, NominalRun.of(nominal, plan)) for plan in case.plans[:count]))
 
     def __call__(self, case: Case) -> float:
         """RMS over the runs."""
@@ -170,9 +177,10 @@ class Detectability:
     slopes: tuple[Array, ...]
 
     @classmethod
-    def of(cls, case: Case) -> Detectability:
-        """Drive the nominal robot, and once for each parameter, on the runs that are fitted."""
-        plain = replace(case, robot=case.nominal, effects=())
+    def of(cls, case: Case, beside: Sequence[EffectUse] = ()) -> Detectability:
+        """Drive the nominal robot, and once for each parameter, on the runs that are fitted; with
+        the effects beside which another one has to show."""
+        plain = replace(case, robot=case.nominal, effects=tuple(beside))
         fitted = [plan for plan in case.plans if plan.use == "fit"]
         runs = {plan: NominalRun.of(plain, plan, DIRECTIONS) for plan in fitted}
         moved = [
