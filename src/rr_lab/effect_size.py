@@ -42,8 +42,8 @@ def _seen(motion: Motion, tracked: Sequence[float] = (0.0, 0.0)) -> Array:
 
 @dataclass(frozen=True)
 class NominalRun:
-    """A run to compare others with, (4, n) each: its path, and its sensitivity to the initial speed,
-    per m/s."""
+    """A run to compare others with, (4, n) each: its path, and its sensitivity to the initial
+    speed, per m/s."""
 
     path: Array
     change: Array

@@ -258,8 +258,8 @@ def _answer_text(case: Case, draw: Draw) -> str:
 
 
 def _remains(case: Case) -> dict[str, float]:
-    """RMS in sigma that each effect, beside the others, leaves after re-fitting the parameters: with
-    much drag, for one, the robot does not reach a patch that it would reach without."""
+    """RMS in sigma that each effect, beside the others, leaves after re-fitting the parameters: a
+    robot with much drag, say, may not reach a patch that it would reach without."""
     case = replace(case, robot=case.nominal, disturbance="")
     left = {}
     for use in case.effects:
