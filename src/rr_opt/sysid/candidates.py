@@ -81,11 +81,12 @@ class Candidate:
         return in_segments > SETTINGS.accounted or self.accounts(other) > SETTINGS.accounted
 
     def sacrifices(self, other: Candidate) -> bool:
-        """Whether it explains a run worse, by more than its noise, than another one that lacks some
-        of its effects. Its best fit would not, but robust losses let a search give up a run."""
+        """Whether its squared error in a run is twice that of another one which lacks some of its
+        effects. Its best fit's would not be, but robust losses let a search give up a run."""
         before = other.fit.evidences
         return any(
-            e.excess > before[run].excess + e.samples for run, e in self.fit.evidences.items()
+            e.excess + e.samples > 2 * (before[run].excess + before[run].samples)
+            for run, e in self.fit.evidences.items()
         )
 
     def predicts_better(self, other: Candidate) -> bool:
