@@ -53,15 +53,10 @@ class NominalRun:
     def of(cls, case: Case, plan: Plan, step: float = COARSE) -> NominalRun:
         """Drive the case's robot, with its effects, twice."""
         sigma = np.array([case.noise.of(channel) for channel in CHANNELS])
+        rig, conditions = case.rig, plan.conditions
         base, nudged = (
-            _seen(
-                driven(
-                    *(case.engine, case.rig, plan.gait),
-                    *(replace(plan.conditions, nudge=nudge), step),
-                ),
-                case.rig.tracked,
-            )
-            for nudge in (0.0, SPEED_NUDGE)
+            _seen(driven(case.engine, rig, plan.gait, start, step), rig.tracked)
+            for start in (conditions, replace(conditions, nudge=SPEED_NUDGE))
         )
         return cls(base, (nudged - base) / SPEED_NUDGE, sigma[:, None])
 

@@ -21,7 +21,7 @@ class Truth:
     hidden     names of the effects, also of those outside the catalogue
     values     by effect or, for `parameters`, by parameter: its parameters, SI
     size       RMS deviation of each effect alone from the nominal runs, sigma
-    remains    the same after re-fitting the nominal parameters
+    remains    the same beside the other effects, after re-fitting the nominal parameters
     spread     0: the nominal values are true; 1: drawn within their uncertainties
     engine     the physics engine
     realised   by effect: its realisation, if it has several

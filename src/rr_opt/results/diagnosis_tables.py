@@ -173,8 +173,8 @@ def effects_table(found: Diagnosis) -> doc.Table:
     """The accepted effects with their values; nothing for a verdict without effects."""
     rows: list[list[doc.Cell]] = []
     for finding in found.findings if found.verdict != "parameters" else ():
-        sure, removes = f"{finding.confidence:.2f}", share_text(finding)
-        first = [candidate_words([finding.name]), sure, removes]
+        name, sure = candidate_words([finding.name]), f"{finding.confidence:.2f}"
+        first = [name, sure, share_text(finding)]
         for name, value in finding.parameters.items():
             rows.append([first[0], name, value_text(value), *first[1:]])
             first = ["", "", ""]

@@ -81,11 +81,12 @@ class Candidate:
         return in_segments > SETTINGS.accounted or self.accounts(other) > SETTINGS.accounted
 
     def sacrifices(self, other: Candidate) -> bool:
-        """Whether its squared error in a run is twice that of another one which lacks some of its
-        effects. Its best fit's would not be, but robust losses let a search give up a run."""
-        before = other.fit.evidences
+        """Whether it leaves a multiple of the squared error in a run that another one leaves, which
+        lacks some of its effects. Its best fit would not, but robust losses allow giving up a run.
+        """
+        before, factor = other.fit.evidences, SETTINGS.sacrificed
         return any(
-            e.excess + e.samples > 2 * (before[run].excess + before[run].samples)
+            e.excess + e.samples > factor * (before[run].excess + before[run].samples)
             for run, e in self.fit.evidences.items()
         )
 

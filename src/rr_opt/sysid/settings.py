@@ -25,6 +25,8 @@ class Settings:
     first_steps           steps of a fit before the process noise is estimated
     patience              a fit that is behind another is given up unless this many steps like its
                           last one would catch up
+    sacrificed            factor on the squared error that a part of the effects leaves in a run at
+                          which the whole has ended in a wrong minimum: its best fit leaves less
     steps                 most steps of a fit
     negligible            RMS misfit beyond the noise, in sigma, allowed to the nominal model
     none                  the same with effects, as no machine matches the model of an effect
@@ -81,6 +83,7 @@ class Settings:
     trial_steps: int = 4
     first_steps: int = 4
     patience: float = 10.0
+    sacrificed: float = 2.0
     steps: int = 15
     negligible: float = 0.1
     none: float = 0.2

@@ -29,18 +29,19 @@ KEPT = 1e-8
 
 
 class _Care(NamedTuple):
-    """phases of a cycle; iterations of a climb, and its number of restarts, as the limiting peaks
-    can change along it; tolerance, by whether friction is viscous, as kinks end any climb that asks
-    for more."""
+    """phases of a cycle; tolerance and iterations of a climb, and its number of restarts, as the
+    limiting peaks can change along it."""
 
     phases: int
+    tolerance: float
     iterations: int
     repeats: int
-    tolerance: dict[bool, float]
 
 
-_ROUGH = _Care(PHASES // 2, 30, 1, {True: 1e-6, False: 1e-6})
-_FINE = _Care(2 * PHASES, 100, 4, {True: 1e-10, False: 1e-8})
+_ROUGH, _FINE = _Care(PHASES // 2, 1e-6, 30, 1), _Care(2 * PHASES, 1e-10, 100, 4)
+_RESOLVED = {True: 0.0, False: 1e-8}
+"""Least tolerance, by whether friction is viscous: kinks keep a climb that asks for more from
+ending."""
 _SETTLED, _STEPS, _LONGEST = 1e-9, 5, 0.01
 _AHEAD = 1e-6
 """Least V . E/|V|: at 0 a gait would go neither forward nor backward."""
@@ -70,7 +71,8 @@ def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = F
 
     care = _ROUGH if rough else _FINE
     local = _Local(problem, np.asarray(start, float), aim, care.phases)
-    options = {"ftol": care.tolerance[local.viscous], "maxiter": care.iterations}
+    tolerance = max(care.tolerance, _RESOLVED[local.viscous])
+    options = {"ftol": tolerance, "maxiter": care.iterations}
     z = local.first
     for _ in range(care.repeats if len(z) else 0):
         end = minimize(
