@@ -53,5 +53,5 @@ EFFECT = Effect(
     sentence="Each wheel resists rolling with a force that does not depend on its speed.",
     enter=_enter,
     near_discontinuous=True,
-    lookalikes=("a cable that is dragged along", "friction that falls with the speed"),
+    lookalikes=("a dragged cable", "Stribeck friction"),
 )
