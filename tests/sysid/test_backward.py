@@ -86,7 +86,7 @@ class Near(Selection):
 
     def _backward(self, needed) -> None: ...
 
-    _refine = _substitute = _polish = lambda _: None
+    _refine = _substitute = _polish = _contest = lambda _: None
 
     def _simplest(self) -> Any:
         return self.best

@@ -23,9 +23,11 @@ def doubt(
     predicts=0.9,
     none=False,
     foreseen=True,
+    suspected=(),
 ) -> str:
     made: Any = SimpleNamespace(
         best=best,
+        suspected=suspected,
         _ended=[best, *others],
         selection=SimpleNamespace(
             base=candidate(), insignificant=lambda _: none, foreseen=foreseen
@@ -74,6 +76,10 @@ def test_what_predicts_too_little_better_is_said_to_be_open():
 def test_nothing_is_said_where_nothing_predicts_better():
     assert doubt(candidate(better=False)) == ""
     assert doubt(candidate(), candidate("coulomb_friction", elpd=-1.0)) == ""
+
+
+def test_nothing_is_said_beside_a_suspicion():
+    assert doubt(candidate("dragged_cable"), suspected=("dragged_cable",)) == ""
 
 
 DISAGREE = "The recordings disagree on the values of the nominal model."

@@ -41,6 +41,35 @@ def test_named(effect):
         assert best.fit.values[name] == pytest.approx(value, rel=0.3)
 
 
+LOOKALIKES = {
+    "dragged_cable": {"force2": 0.01, "distance2": 0.1},
+    "stribeck_friction": {"force1": 0.005, "force2": 0.005, "sliding": 0.2, "speed": 0.03},
+}
+
+
+@pytest.mark.parametrize("effect", LOOKALIKES)
+def test_what_the_best_effect_imitates_is_found(effect):
+    values = {f"{effect}.{name}": value for name, value in LOOKALIKES[effect].items()}
+    model = with_effect(values, (effect,), gaits=UNLIKE)
+    best = Selection(model, first(model, range(len(model.runs)))).run()
+    assert best.effects == (effect,)
+    for name, value in values.items():
+        assert best.fit.values[name] == pytest.approx(value, rel=0.3)
+
+
+def test_an_effect_is_compared_with_what_looks_like_it():
+    values = {
+        f"coulomb_friction.{name}": force for name, force in HIDDEN["coulomb_friction"].items()
+    }
+    model = with_effect(values, ("coulomb_friction",), gaits=UNLIKE)
+    search = Selection(model, first(model, range(len(model.runs))))
+    best = search.run()
+    assert {one.effects for one in search.lookalikes} == {(name,) for name in LOOKALIKES}
+    assert not set(search.lookalikes) & set(search.tried.values())
+    cables = [one for one in search.lookalikes if one.effects == ("dragged_cable",)]
+    assert all(best.predicts_better(one) for one in cables)
+
+
 def test_nothing_is_named_where_nothing_is_missing():
     model = with_effect({}, (), gaits=UNLIKE)
     assert Selection(model, first(model, range(len(model.runs)))).run().effects == ()

@@ -66,6 +66,13 @@ def test_what_looks_alike_is_not_ruled_out(found):
     assert "ruled out" not in summary_of(found)
 
 
+def test_what_is_suspected_is_said(found):
+    suspect = replace(found.findings[0], name="dragged_cable", confidence=0.87)
+    text = summary_of(replace(found, verdict="unexplained", findings=(), suspects=(suspect,)))
+    assert "Suspected, but untested in trials: dragged cable (confidence 87 %). " in text
+    assert "Suspected" not in summary_of(found)
+
+
 @pytest.mark.parametrize(("off", "said"), [(0.05, "50.0 mm"), (0.0, "less than 0.1 mm")])
 def test_a_place_is_never_said_to_be_off_by_nothing(off, said):
     recorded = np.zeros((50, 4))

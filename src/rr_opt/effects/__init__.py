@@ -13,6 +13,7 @@ _MODULES = """
 servo_lag servo_rate_limit servo_backlash servo_offset coulomb_friction quadratic_drag
 rolling_force_curve left_right_drag wheel_inertia axle_misalignment floor_tilt floor_patch
 lateral_slip com_offset marker_offset clock_offset zero_offset
+dragged_cable stribeck_friction
 """
 
 _EFFECTS = [import_module(f"{__name__}.{module}").EFFECT for module in _MODULES.split()]

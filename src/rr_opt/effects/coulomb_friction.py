@@ -11,7 +11,7 @@ of what a Runge-Kutta step of order 4 tolerates. With 5 ms, recordings of slow r
 friction, which are inside the smoothed part for long, seemed to disagree on its size.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import casadi as ca
 
@@ -24,13 +24,21 @@ _STEP = 2e-3
 """s; within a step of this length friction does not reverse a speed."""
 
 
-def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
+def steady_in_a_step(mechanism: Mechanism, force: ca.SX) -> ca.SX:
+    """The change of speed (m/s) that a force makes in 2 ms."""
+    return _STEP * force / (mechanism.parameters["m1"] + mechanism.parameters["m2"])
+
+
+def dry(
+    mechanism: Mechanism, values: Mapping[str, ca.SX], share: Callable[[ca.SX], ca.SX | float]
+) -> Mechanism:
+    """Add dry friction at every wheel: a share of `force1` or `force2` at each speed, m/s."""
     u0 = SMOOTHING_SPEED
     if mechanism.for_prediction:
-        p, forces = mechanism.parameters, 2 * (values["force1"] + values["force2"])
-        u0 = values["onset"] + _STEP * forces / (p["m1"] + p["m2"])
+        every = 2 * (values["force1"] + values["force2"])
+        u0 = values["onset"] + steady_in_a_step(mechanism, every)
     return with_resistance(
-        mechanism, lambda wheel, u: -values[f"force{wheel.platform}"] * ca.tanh(u / u0)
+        mechanism, lambda wheel, u: -values[f"force{wheel.platform}"] * share(u) * ca.tanh(u / u0)
     )
 
 
@@ -39,19 +47,22 @@ def _viscous(operated: OperatingRange) -> float:
     return (operated.robot.k1 + operated.robot.k2) / 2 * operated.speed
 
 
+FORCES = (
+    Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), typical_for=_viscous),
+    Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), typical_for=_viscous),
+    Parameter(
+        *("onset", "m/s", (2e-4, 0.05), 1e-3), neutral=SMOOTHING_SPEED, initial_guesses=(1.0,)
+    ),
+)
+"""Friction of a wheel of either platform, and the speed over which it sets in."""
+
 EFFECT = Effect(
     name="coulomb_friction",
     family="rolling",
     port=Port.FORCE,
-    parameters=(
-        Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), typical_for=_viscous),
-        Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), typical_for=_viscous),
-        Parameter(
-            *("onset", "m/s", (2e-4, 0.05), 1e-3), neutral=SMOOTHING_SPEED, initial_guesses=(1.0,)
-        ),
-    ),
+    parameters=FORCES,
     sentence="Each wheel resists rolling with a force that does not depend on its speed.",
-    enter=_enter,
+    enter=lambda mechanism, values: dry(mechanism, values, lambda _: 1.0),
     near_discontinuous=True,
-    lookalikes=("a dragged cable", "Stribeck friction"),
+    lookalikes=("dragged_cable", "stribeck_friction"),
 )

@@ -106,11 +106,13 @@ class Effect:
     near_discontinuous  its force all but jumps with the speed, so predictions need short steps
     differentiable      the prediction is differentiable in its parameters where it vanishes
     candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,
-                        nor what the experiment states of itself
+                        what the experiment states of itself, nor a lookalike of others
     forms               which parameters are fitted together; without any, all of them
     form_error          relative deviation of real machines from this model of it: larger for
                         contacts and stops, for which many laws exist
-    lookalikes          what is not in the catalogue and moves a robot much as this does
+    lookalikes          effects that are no candidates and move a robot much as this does: none may
+                        predict better if this is to be named
+    unmodelled          what has no model here and moves a robot much as this does, in words
     """
 
     name: str
@@ -132,6 +134,7 @@ class Effect:
     forms: tuple[tuple[str, ...], ...] = ()
     form_error: float = 0.02
     lookalikes: tuple[str, ...] = ()
+    unmodelled: tuple[str, ...] = ()
 
     def actuated(
         self,

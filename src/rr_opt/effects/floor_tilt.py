@@ -32,5 +32,5 @@ EFFECT = Effect(
     ),
     sentence="The floor slopes, and gravity pulls the robot downhill.",
     enter=_enter,
-    lookalikes=("a tether that pulls one way",),
+    unmodelled=("a tether that pulls one way",),
 )

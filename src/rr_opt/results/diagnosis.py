@@ -255,7 +255,9 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
         place = f"{tables.stage_name(lit)}: " if lit and lit.channel != found.channel else ""
         yield doc.Fact("  where", f"{place}{one.where}")
     for finding in found.findings:
-        yield from _finding(finding, found.verdict)
+        yield from _finding(finding, "" if found.verdict == "parameters" else "confidence")
+    for finding in found.suspects:
+        yield from _finding(finding, "suspected, confidence")
     proof = counted(len(one.proof), "held-out recording") if one.marked else one.proven_on
     misfit = f"{found.before:.2f} before, {found.after:.2f} after, in units of the noise"
     yield doc.Fact("misfit", f"{misfit} ({proof})")
@@ -275,9 +277,9 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     yield doc.Fact("took", f"{sum(found.seconds.values()):.0f} s")
 
 
-def _finding(finding: Finding, verdict: str) -> Iterator[doc.Fact]:
-    if verdict != "parameters":
-        head = f"confidence {finding.confidence:.2f}, explains {tables.share_text(finding)}"
+def _finding(finding: Finding, sure: str) -> Iterator[doc.Fact]:
+    if sure:
+        head = f"{sure} {finding.confidence:.2f}, explains {tables.share_text(finding)}"
         yield doc.Fact(tables.candidate_words([finding.name]), head)
     for name, value in finding.parameters.items():
         yield doc.Fact(f"  {name}", tables.value_text(value))

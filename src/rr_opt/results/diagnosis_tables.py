@@ -170,10 +170,14 @@ _MOST = 30
 
 
 def effects_table(found: Diagnosis) -> doc.Table:
-    """The accepted effects with their values; nothing for a verdict without effects."""
+    """The accepted effects and the suspected ones with their values; nothing for a verdict without
+    effects."""
     rows: list[list[doc.Cell]] = []
-    for finding in found.findings if found.verdict != "parameters" else ():
+    named = found.findings if found.verdict != "parameters" else ()
+    for finding in (*named, *found.suspects):
         name, sure = candidate_words([finding.name]), f"{finding.confidence:.2f}"
+        if finding in found.suspects:
+            name += ", suspected"
         first = [name, sure, share_text(finding)]
         for name, value in finding.parameters.items():
             rows.append([first[0], name, value_text(value), *first[1:]])

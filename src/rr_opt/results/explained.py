@@ -80,6 +80,7 @@ class Explained(Result, Generic[Diagnosed]):
                 ],
             },
             "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
+            "suspects": [_finding(each, of_robot=False) for each in found.suspects],
             "candidates": [
                 {
                     **picked(one, "effects score values accepted"),

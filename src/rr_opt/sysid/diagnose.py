@@ -73,7 +73,7 @@ def diagnose(model: MachineModel, progress: Callable[[str], None] = lambda _: No
 def _answer(result: Identification) -> Diagnosis:
     verdict, selection, best = verdict_of(result), result.selection, result.best
     model, base = selection.model, selection.base
-    named = findings(result) if verdict == "missing_physics" else ()
+    named = findings(result, result.shown) if verdict == "missing_physics" else ()
     if verdict == "parameters":
         named = wrong_values(result)
     faulty = verdict in ("missing_physics", "unexplained")
@@ -99,6 +99,7 @@ def _answer(result: Identification) -> Diagnosis:
         where=guilty.where if guilty else "",
         stages=located,
         findings=named,
+        suspects=findings(result, result.suspected),
         parameters={
             q.name: one
             for q, one in zip(fit.problem.quantities, estimates(fit).values(), strict=True)

@@ -41,7 +41,7 @@ class Finding:
 
     confidence  0 to 1, against the best explanation without it
     removes     share of the held-out misfit that it removes, 0 to 1
-    lookalikes  what is not in the catalogue and moves a machine much as it does
+    lookalikes  what moves a machine much as it does and is not ruled out
     """
 
     name: str
@@ -191,6 +191,8 @@ class Diagnosis:
     nominal, refitted, final   misfit of each recording: nominal, with parameters refitted within
                                their uncertainties, with the accepted effects
     before, after              RMS over the held-out recordings in sigma, 1 is the noise
+    suspects                   lookalikes of effects, which predict better than these but were not
+                               tested in trials
     values                     of all parameters and effects of the corrected robot, SI
     remainder                  the misfit that remains with the accepted effects
     """
@@ -216,6 +218,7 @@ class Diagnosis:
     seconds: Mapping[str, float]
     converged: bool = True
     remainder: Remainder = Remainder("none", 0.0, 0.0)
+    suspects: tuple[Finding, ...] = ()
 
 
 def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
@@ -256,8 +259,10 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     )
     alike = dict.fromkeys(other for one in found.findings for other in one.lookalikes)
     not_excluded = f"Not ruled out: {listed(alike, 'or')}." if alike else ""
+    likely = (f"{words_of(s.name)} (confidence {100 * s.confidence:.0f} %)" for s in found.suspects)
+    suspected = f"Suspected, but untested in trials: {listed(likely)}." if found.suspects else ""
     doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)
     plan = found.next_experiment.sentence if found.next_experiment and doubtful else ""
     why = doubt if found.verdict == "unexplained" else ""
-    every = (opening, tie, not_excluded, why, misfit, remains, plan)
+    every = (opening, suspected, tie, not_excluded, why, misfit, remains, plan)
     return " ".join(part for part in every if part)

@@ -68,7 +68,10 @@ class EffectInfo:
                 score test can detect it
     upstream    it changes the machine's drive, which is recorded separately
     form_error  relative deviation of machines from this model of the effect
-    lookalikes  what is not in the catalogue and moves a machine much as it does
+    named       a diagnosis may name it; if not, it is only a lookalike of others
+    lookalikes  effects that are not named and move a machine much as it does: none may predict
+                better if it is to be named
+    unmodelled  what has no model and moves a machine much as it does, in words
     """
 
     name: str
@@ -79,7 +82,9 @@ class EffectInfo:
     smooth: bool = True
     upstream: bool = False
     form_error: float = 0.02
+    named: bool = True
     lookalikes: tuple[str, ...] = ()
+    unmodelled: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, order=True)

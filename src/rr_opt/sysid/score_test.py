@@ -29,7 +29,11 @@ class Score:
 def with_all(fit: Fit) -> tuple[str, ...]:
     """The fit's effects, and all smooth ones that it lacks."""
     catalogue = fit.problem.model.catalogue
-    lacking = [one for one in catalogue if catalogue[one].smooth and one not in fit.effects]
+    lacking = [
+        name
+        for name, info in catalogue.items()
+        if info.smooth and info.named and name not in fit.effects
+    ]
     return tuple(sorted((*fit.effects, *lacking)))
 
 
@@ -39,7 +43,7 @@ def scores(fit: Fit, most: int = 2) -> list[Score]:
     choices = [
         Choice(name, form)
         for name, info in model.catalogue.items()
-        if info.smooth and name not in fit.effects
+        if info.smooth and info.named and name not in fit.effects
         for form in range(len(info.forms))
     ]
     names = tuple(dict.fromkeys(one.name for one in choices))

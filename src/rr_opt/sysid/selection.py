@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from rr_opt.formatting import words_of
 from rr_opt.sysid.candidates import (
     Candidate,
     continued,
@@ -37,12 +38,15 @@ class Selection:
 
     base  the nominal model with its parameters fitted
     best  the candidate that was chosen
+    lookalikes  of the best one's effects: candidates that have one in its place and predict no
+                better
     """
 
     model: MachineModel
     base: Candidate
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
+    lookalikes: Sequence[Candidate] = ()
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
     _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
 
@@ -78,6 +82,7 @@ class Selection:
         self._polish()
         self._backward(self.needed)
         self.best = self._simplest()
+        self._contest()
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
@@ -218,6 +223,7 @@ class Selection:
             name: {q.name: q.scale for q in info.forms[0].quantities}
             for name, info in self.model.catalogue.items()
             if not (info.smooth or info.upstream or name in self.best.effects)
+            and info.named
             and info.forms[0].guesses
         }
         yield from self._added(((Choice(name),), [guess]) for name, guess in usual.items())
@@ -273,6 +279,36 @@ class Selection:
                     self.tried[key] = again
                 if again.elpd > self.best.elpd:
                     self.best = again
+
+    def _contest(self) -> None:
+        """Try the lookalikes of the answer's effects in their place: an effect imitates the one
+        that predicts better, which need not have the same companions."""
+        best, every = self.best, [*self._lookalikes()]
+        better = [one for one in every if one.predicts_better(best)]
+        self.lookalikes = [one for one in every if one not in better]
+        if better:
+            self.tried |= {one.choices: one for one in better}
+            self.best = max(better, key=lambda one: one.elpd)
+            self._backward(self.needed)
+
+    def _lookalikes(self) -> Iterator[Candidate]:
+        catalogue, best = self.model.catalogue, self.best
+        for choice in best.choices:
+            rest = [one for one in best.choices if one is not choice]
+            for name in catalogue[choice.name].lookalikes:
+                self.progress(f"comparing {words_of(choice.name)} with {words_of(name)}")
+                # The values that it shares with the effect.
+                same = {
+                    quantity.replace(choice.name, name): value
+                    for quantity, value in best.fit.values.items()
+                    if quantity.startswith(f"{choice.name}.")
+                }
+                for form, info in enumerate(catalogue[name].forms):
+                    own = {q.name for q in info.quantities}
+                    kept = {quantity: same[quantity] for quantity in own & same.keys()}
+                    guesses = [{**guess, **kept} for guess in info.guesses]
+                    choices = (*rest, Choice(name, form))
+                    yield fitted(self.model, choices, best.fit, guesses, best.fit)
 
     @property
     def weighted(self) -> list[tuple[Candidate, float]]:

@@ -96,7 +96,10 @@ class Identification:
 
     @property
     def doubt(self) -> str:
-        """What predicts best and why it is not named, or what else is known of what is missing."""
+        """What predicts best and why it is not named, or what else is known of what is missing;
+        empty if something is suspected."""
+        if self.suspected:
+            return ""
         if not self.best.choices and self.selection.insignificant(self.best):
             return " ".join(self._hints())
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
@@ -167,6 +170,17 @@ class Identification:
 
     @property
     def shown(self) -> tuple[Choice, ...]:
+        """The named effects that are more likely missing than not."""
+        catalogue = self.selection.model.catalogue
+        return tuple(one for one in self._likely if catalogue[one.name].named)
+
+    @property
+    def suspected(self) -> tuple[Choice, ...]:
+        """The others, which predict better than the named effects that look like them."""
+        return tuple(one for one in self._likely if one not in self.shown)
+
+    @cached_property
+    def _likely(self) -> tuple[Choice, ...]:
         """The effects that are more likely missing than not: each of them, or another one that is
         indistinguishable from it."""
         alike = self.selection.alike()
@@ -218,11 +232,12 @@ def verdict_of(result: Identification) -> Verdict:
     return "consistent"
 
 
-def findings(result: Identification) -> tuple[Finding, ...]:
-    """The effects that are shown, strongest first."""
+def findings(result: Identification, choices: Sequence[Choice]) -> tuple[Finding, ...]:
+    """Effects of the answer, strongest first."""
+    catalogue = result.selection.model.catalogue
     base = max(result.selection.base.excess, 1e-12) ** 2
     out = []
-    for choice in result.shown:
+    for choice in choices:
         rest = tuple(one for one in result.best.choices if one != choice)
         without = result.selection.tried.get(rest, result.selection.base)
         left = without.excess**2 if rest else base
@@ -230,9 +245,18 @@ def findings(result: Identification) -> tuple[Finding, ...]:
         if not rest:
             removes = 1.0 - result.share
         values = named(result.best.fit, choice.name)
-        others = result.selection.model.catalogue[choice.name].lookalikes
+        others = (*_undecided(result, choice), *catalogue[choice.name].unmodelled)
         out.append(Finding(choice.name, result.confidences[choice.name], values, removes, others))
     return tuple(sorted(out, key=lambda one: -one.removes))
+
+
+def _undecided(result: Identification, choice: Choice) -> Iterator[str]:
+    """The lookalikes of an effect that predict about as well as it does."""
+    selection = result.selection
+    for name in selection.model.catalogue[choice.name].lookalikes:
+        own = [one for one in selection.lookalikes if name in one.effects]
+        if any(not selection.best.predicts_better(one) for one in own):
+            yield words_of(name)
 
 
 def wrong_values(result: Identification) -> tuple[Finding, ...]:

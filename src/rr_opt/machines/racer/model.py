@@ -110,10 +110,11 @@ class RacerModel:
 
     @cached_property
     def _catalogue(self) -> Mapping[str, EffectInfo]:
+        lookalikes = {name for effect in CATALOGUE.values() for name in effect.lookalikes}
         return {
             name: effect_info(effect, self.setting)
             for name, effect in CATALOGUE.items()
-            if name not in self.simulator.built_in and effect.candidate
+            if name not in self.simulator.built_in and (effect.candidate or name in lookalikes)
         }
 
     @property

@@ -65,7 +65,9 @@ def effect_info(effect: Effect, setting: OperatingRange) -> EffectInfo:
         smooth=effect.differentiable,
         upstream=effect.port == Port.ACTUATION or effect.delay is not None,
         form_error=effect.form_error,
+        named=effect.candidate,
         lookalikes=effect.lookalikes,
+        unmodelled=effect.unmodelled,
     )
 
 
