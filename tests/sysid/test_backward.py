@@ -81,6 +81,8 @@ class Near(Selection):
     def _enough(self, candidate) -> bool:
         return False
 
+    insignificant = _enough
+
     def _forward(self) -> None:
         self.forward += 1
 

@@ -6,6 +6,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import first
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.intervals import released, wrong
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
 from tests.sysid.made_up import with_effect
 
@@ -68,6 +69,17 @@ def test_an_effect_is_compared_with_what_looks_like_it():
     assert not set(search.lookalikes) & set(search.tried.values())
     cables = [one for one in search.lookalikes if one.effects == ("dragged_cable",)]
     assert all(best.predicts_better(one) for one in cables)
+
+
+def test_the_search_goes_on_where_recordings_disagree_on_the_values():
+    """Either effect alone leaves next to nothing."""
+    pair = {"marker_offset.dx": 0.005, "floor_tilt.tilt_x": 2e-4}
+    model = with_effect(pair, ("marker_offset", "floor_tilt"), gaits=UNLIKE)
+    search = Selection(model, first(model, range(len(model.runs))))
+    assert set(search.run().effects) == {"marker_offset", "floor_tilt"}
+    alone = search.tried[Choice("floor_tilt"),]
+    assert search.insignificant(alone)
+    assert not search.complete(alone)
 
 
 def test_nothing_is_named_where_nothing_is_missing():

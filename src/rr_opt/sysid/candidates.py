@@ -14,7 +14,7 @@ from rr_opt.sysid import estimation
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import Fit, FitProblem
 from rr_opt.sysid.intervals import released, wrong
-from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment
+from rr_opt.sysid.model import Choice, EffectInfo, Model, Quantity, Request, Segment
 from rr_opt.sysid.settings import SETTINGS
 
 
@@ -54,14 +54,20 @@ class Candidate:
         """Misfit of whole-run simulations beyond the noise, RMS in sigma."""
         return self.simulated.excess
 
-    @cached_property
-    def plausible(self) -> bool:
-        """Whether recordings agree on its values, and no more of these are wrong than may be.
-
-        Wrong ones are released first: what is believed of one bends others."""
+    def plausible(self, base: Candidate, catalogue: Mapping[str, EffectInfo]) -> bool:
+        """Whether recordings agree on its values, but for the form errors of its effects; and if it
+        has none, no more values are wrong than may be. `base` has no effects."""
+        if self.choices:
+            explained = {
+                run: max(e.excess, 0.0) / e.samples for run, e in base.simulated.evidences.items()
+            }
+            form_errors = {name: catalogue[name].form_error for name in self.effects}
+            agreed = constancy(self.fit, 0.0, explained, form_errors)
+            return agreed.probability > SETTINGS.named
+        # Wrong values are released first: what is believed of one bends others.
         fit = released(self.fit)
-        agree = constancy(fit, self.excess).probability > SETTINGS.named
-        return agree and len(wrong(fit)) <= SETTINGS.most_effects
+        agreed = constancy(fit, self.excess)
+        return agreed.probability > SETTINGS.named and len(wrong(fit)) <= SETTINGS.most_effects
 
     def advantage(self, other: Candidate) -> tuple[float, float]:
         """Gain in log predictive density over another candidate, nats, and its standard error."""

@@ -3,7 +3,8 @@
 Effects of the drive come first, from the drive's own recording. In forward steps score tests
 suggest effects, fits confirm them, and the machine proposes those that no derivative reveals.
 Backward steps drop effects that the predictions do not need. A model is complete when the misfit
-of its whole-run simulation is within the form error of its effects.
+of its whole-run simulation is within the form error of its effects and recordings agree on its
+values.
 """
 
 from __future__ import annotations
@@ -49,6 +50,8 @@ class Selection:
     lookalikes: Sequence[Candidate] = ()
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
     _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
+    _plausibles: dict[Candidate, bool] = field(default_factory=dict)
+    _contested: Candidate | None = None
 
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
@@ -77,6 +80,8 @@ class Selection:
             if len(self.best.choices) < SETTINGS.most_effects and not self._close(self.best):
                 self._forward()
             self._backward(self._better)
+            if self.insignificant(self.best) and not self._enough(self.best):
+                self._contest()
         self._refine()
         self._substitute()
         self._polish()
@@ -86,8 +91,15 @@ class Selection:
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
-        """Whether its misfit is insignificant and, without effects, its values are plausible."""
-        return self.insignificant(candidate) and (bool(candidate.choices) or candidate.plausible)
+        """Whether its misfit is insignificant and its values are plausible."""
+        return self.insignificant(candidate) and self._plausible(candidate)
+
+    def _plausible(self, candidate: Candidate) -> bool:
+        """Whether the fitted recordings agree on its values: where they do not, something else is
+        missing, and they may show what."""
+        if candidate not in self._plausibles:
+            self._plausibles[candidate] = candidate.plausible(self.base, self.model.catalogue)
+        return self._plausibles[candidate]
 
     def insignificant(self, candidate: Candidate) -> bool:
         """Whether its misfit over whole runs is within the tolerance (`none` with effects,
@@ -283,7 +295,10 @@ class Selection:
     def _contest(self) -> None:
         """Try the lookalikes of the answer's effects in their place: an effect imitates the one
         that predicts better, which need not have the same companions."""
+        if self.best is self._contested:
+            return
         best, every = self.best, [*self._lookalikes()]
+        self._contested = best
         better = [one for one in every if one.predicts_better(best)]
         self.lookalikes = [one for one in every if one not in better]
         if better:
