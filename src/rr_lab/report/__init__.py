@@ -62,11 +62,13 @@ def size_text(case: Case) -> str:
 
 
 def said_text(case: Case) -> str:
-    """Verdict and names with their confidence, or why there is none."""
+    """Verdict, names with their confidence and what is suspected, or why there is none."""
     claim = case.claim
     if claim is None:
         return case.why_none
     names = ", ".join(f"{one.name} ({one.confidence:.2f})" for one in claim.named)
+    if claim.suspects:
+        names += f"{'; ' * bool(names)}suspected {', '.join(claim.suspects)}"
     return f"{claim.verdict}: {names}" if names else claim.verdict
 
 

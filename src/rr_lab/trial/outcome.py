@@ -108,7 +108,7 @@ _FIT = tuple(f"heldout_rms_{when}" for when in ("before", "parameters", "after")
 def scored_part(diagnosis: Mapping[str, Any]) -> dict[str, Any]:
     """The part of a `diagnosis.json` that `Claim.of` reads. Raises as that does."""
     Claim.of(diagnosis)
-    kept = ("verdict", "effects", "indistinguishable", "mismatch", "remainder")
+    kept = ("verdict", "effects", "suspects", "indistinguishable", "mismatch", "remainder")
     evidence = diagnosis["location"]["evidence"]
     return {
         **{name: diagnosis[name] for name in kept if name in diagnosis},
@@ -127,6 +127,7 @@ class Claim:
     p_values    by the test's name
     remainder   what is left with the named effects: none, small, large, or empty if not stated
     share       of the initial mismatch that remains
+    suspects    names of what is only suspected
     """
 
     verdict: str
@@ -138,6 +139,7 @@ class Claim:
     p_values: Mapping[str, float] = field(default_factory=dict)
     remainder: str = ""
     share: float | None = None
+    suspects: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, diagnosis: Mapping[str, Any]) -> Claim:
@@ -156,6 +158,7 @@ class Claim:
             p_values={test: p for test, p in p_values.items() if p is not None},
             remainder=remainder.get("size", ""),
             share=remainder.get("share"),
+            suspects=tuple(str(one["name"]) for one in diagnosis.get("suspects", ())),
         )
 
     @property

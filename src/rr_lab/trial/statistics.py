@@ -247,6 +247,14 @@ def _by_its_name(case: Case) -> bool:
     return _RIGHT(case) and case.claim is not None and case.claim.names == case.truth.names
 
 
+def _suspects(case: Case) -> bool:
+    return case.claim is not None and bool(case.claim.suspects)
+
+
+def _rightly(case: Case) -> bool:
+    return case.claim is not None and set(case.claim.suspects) <= set(case.truth.hidden)
+
+
 _RIGHT, _FALSE = _outcome("right"), _outcome("false claim")
 _NULL, _SINGLE, _PAIR, _OUTSIDE = map(_kind, ("null", "single", "pair", "outside"))
 _PARAMETERS, _DISTURBED = map(_kind, ("parameters", "disturbed"))
@@ -269,6 +277,7 @@ _PREDICATES: dict[str, tuple[Predicate, Predicate]] = {
     "parameters_named": (_PARAMETERS, _all_named),
     "outside": (_OUTSIDE, _RIGHT),
     "outside_named": (_OUTSIDE, _outcome("named with confidence")),
+    "suspected": (_suspects, _rightly),
     "disturbed_false_claims": (lambda case: _DISTURBED(case) and case.truth.nothing, _FALSE),
     "disturbed_single": (lambda case: _DISTURBED(case) and not case.truth.nothing, _RIGHT),
     "no_answer": (lambda _: True, lambda case: case.claim is None),

@@ -28,6 +28,8 @@ _NAMES = {
     "servo_backlash": "servo backlash",
     "servo_offset": "a servo offset",
     "wheel_inertia": "wheel inertia",
+    "dragged_cable": "a dragged cable",
+    "stribeck_friction": "Stribeck friction",
 }
 
 _COMMON = {
@@ -72,6 +74,10 @@ def headline(
         return f"The model is right, but {values} differ{'s' * (len(names) < 2)} from nominal"
     if found.verdict == "missing_physics":
         return f"The model leaves out {listed(map(effect, names)) or 'something'}"
+    if found.suspects:
+        several = "are" if len(found.suspects) > 1 else "is"
+        names = listed(effect(one.name) for one in found.suspects)
+        return f"Physics is missing; {names} {several} suspected"
     return "Physics is missing, but no known effect accounts for it"
 
 
