@@ -42,14 +42,14 @@ def dry(
     )
 
 
-def _viscous(operated: OperatingRange) -> float:
-    """The viscous force on a wheel at the robot's speed."""
+def viscous(operated: OperatingRange) -> float:
+    """The viscous force on a wheel at the robot's speed, N."""
     return (operated.robot.k1 + operated.robot.k2) / 2 * operated.speed
 
 
 FORCES = (
-    Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), typical_for=_viscous),
-    Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), typical_for=_viscous),
+    Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), typical_for=viscous),
+    Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), typical_for=viscous),
     Parameter(
         *("onset", "m/s", (2e-4, 0.05), 1e-3), neutral=SMOOTHING_SPEED, initial_guesses=(1.0,)
     ),

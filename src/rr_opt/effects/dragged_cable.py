@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from rr_opt.effects.coulomb_friction import SMOOTHING_SPEED, steady_in_a_step
+from rr_opt.effects.coulomb_friction import SMOOTHING_SPEED, steady_in_a_step, viscous
 from rr_opt.effects.effect import Effect, OperatingRange, Parameter, Port
 from rr_opt.mechanics.kinematics import Force, Mechanism
 
@@ -33,9 +33,8 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     return replace(mechanism, forces=(*mechanism.forces, *forces))
 
 
-def _viscous(operated: OperatingRange) -> float:
-    """The viscous force on the robot at its speed."""
-    return 2 * (operated.robot.k1 + operated.robot.k2) * operated.speed
+def _of_all_wheels(operated: OperatingRange) -> float:
+    return 4 * viscous(operated)
 
 
 EFFECT = Effect(
@@ -43,8 +42,8 @@ EFFECT = Effect(
     family="rolling",
     port=Port.FORCE,
     parameters=(
-        Parameter("force1", "N", (0.0, 10.0), 0.02, typical_for=_viscous),
-        Parameter("force2", "N", (0.0, 10.0), 0.02, typical_for=_viscous),
+        Parameter("force1", "N", (0.0, 10.0), 0.02, typical_for=_of_all_wheels),
+        Parameter("force2", "N", (0.0, 10.0), 0.02, typical_for=_of_all_wheels),
         Parameter("distance1", "m", (0.0, 1.0), 0.1, initial_guesses=(0.05, 1.0)),
         Parameter("distance2", "m", (0.0, 1.0), 0.1, initial_guesses=(0.05, 1.0)),
     ),

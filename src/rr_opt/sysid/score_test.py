@@ -28,13 +28,13 @@ class Score:
 
 def with_all(fit: Fit) -> tuple[str, ...]:
     """The fit's effects, and all smooth ones that it lacks."""
-    catalogue = fit.problem.model.catalogue
-    lacking = [
-        name
-        for name, info in catalogue.items()
-        if info.smooth and info.named and name not in fit.effects
-    ]
-    return tuple(sorted((*fit.effects, *lacking)))
+    return tuple(sorted((*fit.effects, *_lacking(fit))))
+
+
+def _lacking(fit: Fit) -> list[str]:
+    """The smooth effects that a fit lacks and a diagnosis may name."""
+    every = fit.problem.model.catalogue.items()
+    return [n for n, info in every if info.smooth and info.named and n not in fit.effects]
 
 
 def scores(fit: Fit, most: int = 2) -> list[Score]:
@@ -42,12 +42,10 @@ def scores(fit: Fit, most: int = 2) -> list[Score]:
     model, problem = fit.problem.model, fit.problem
     choices = [
         Choice(name, form)
-        for name, info in model.catalogue.items()
-        if info.smooth and info.named and name not in fit.effects
-        for form in range(len(info.forms))
+        for name in _lacking(fit)
+        for form in range(len(model.catalogue[name].forms))
     ]
-    names = tuple(dict.fromkeys(one.name for one in choices))
-    if not names:
+    if not choices:
         return []
     added = {
         q.name: q for one in choices for q in model.catalogue[one.name].forms[one.form].quantities
