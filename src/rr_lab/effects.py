@@ -25,6 +25,7 @@ from rr_lab.rig import (
     Rig,
     RollingResistance,
     Rub,
+    Strip,
     Tether,
     swing_inertia,
     wheel_loads,
@@ -196,12 +197,14 @@ def _slip(rig: Rig, values: Values) -> None:
 
 
 def _patch(rig: Rig, values: Values) -> None:
-    """The drag of each wheel times `multiplier` within a circle, or beyond an edge."""
-    within: Circle | Edge
+    """The drag of each wheel times `multiplier` within a circle or strip, or beyond an edge."""
+    within: Circle | Edge | Strip
     if "radius" in values:
         within = Circle(values["x"], values["y"], values["radius"])
     else:
         within = Edge(values["edge_x"], values["edge_y"], values["normal"])
+        if "width" in values:
+            within = Strip(within, values["width"])
     rig.laws.append(Patch(values["multiplier"], within))
 
 
@@ -222,6 +225,21 @@ def _across_a_path(setting: Setting, values: Values) -> Values:
     x, y = setting.passed()
     normal = float(setting.rng.uniform(-math.pi, math.pi))
     return {"multiplier": 1 + values["multiplier"] / 2, "normal": normal, "edge_x": x, "edge_y": y}
+
+
+_HALF_TURN = (-math.pi / 2, math.pi / 2)
+"""A strip has two edges; the normal of the one that is told is within these directions."""
+
+
+def _strip_on_a_path(setting: Setting, values: Values) -> Values:
+    """A strip around a place on a run."""
+    x, y = setting.passed()
+    normal, width = (float(setting.rng.uniform(*ends)) for ends in (_HALF_TURN, (0.1, 0.6)))
+    edge_x, edge_y = (
+        at - width / 2 * way for at, way in ((x, math.cos(normal)), (y, math.sin(normal)))
+    )
+    edge = {"normal": normal, "edge_x": edge_x, "edge_y": edge_y, "width": width}
+    return {"multiplier": 1 + values["multiplier"] / 2, **edge}
 
 
 def _lag(rig: Rig, values: Values) -> None:

@@ -215,11 +215,24 @@ class Edge:
 
 
 @dataclass(frozen=True)
+class Strip:
+    """The same up to a second edge at a distance of `width`, m."""
+
+    edge: Edge
+    width: float
+
+    def depth(self, x: Any, y: Any) -> Any:
+        """Depth of a point inside, m; negative outside. For numbers or expressions."""
+        half = self.width / 2
+        return half - ((self.edge.depth(x, y) - half) ** 2) ** 0.5
+
+
+@dataclass(frozen=True)
 class Patch:
     """Friction `times` as large for each wheel inside."""
 
     times: float
-    within: Circle | Edge
+    within: Circle | Edge | Strip
 
     def __call__(self, wheels: Wheels) -> None:
         """The friction at this instant."""

@@ -47,7 +47,8 @@ def rolling(robot: Robot, given: dict) -> Law:
             away = math.sqrt(math.dist(place, (values["x"], values["y"])) ** 2 + 0.0005**2)
             into = (math.cos(values["normal"]), math.sin(values["normal"]))
             beyond = float(np.dot(place - (values["edge_x"], values["edge_y"]), into))
-            depth = values["radius"] - away if values["radius"] > 0 else beyond
+            strip = min(beyond, values["width"] - beyond)
+            depth = values["radius"] - away if values["radius"] > 0 else strip
             force *= 1 + (values["multiplier"] - 1) * float(expit(2 * depth / 0.005))
         if values := given.get("quadratic_drag"):
             force -= values["coefficient_total"] / 4 * u * math.sqrt(u**2 + 1e-8)

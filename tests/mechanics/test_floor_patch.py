@@ -16,6 +16,7 @@ from tests.mechanics.floor import on_floor
 
 CIRCLE = {"x": 0.4, "y": -0.3, "radius": 1.0, "normal": 0.0, "edge_x": 9.0, "edge_y": 9.0}
 EDGE = {"x": 9.0, "y": 9.0, "radius": 0.0, "normal": 2.2, "edge_x": 0.4, "edge_y": -0.3}
+STRIP = {**EDGE, "width": 2.0}
 INTO = np.array([math.cos(2.2), math.sin(2.2)])
 HERE = np.array([0.4, -0.3])
 
@@ -32,8 +33,19 @@ def rolls_harder(robot: Robot, times: float) -> Robot:
         (CIRCLE, HERE + np.array([0.0, 2.0]), False),
         (EDGE, HERE + INTO, True),
         (EDGE, HERE - INTO, False),
+        (STRIP, HERE + INTO, True),
+        (STRIP, HERE + 3 * INTO, False),
+        (STRIP, HERE - INTO, False),
     ],
-    ids=["in the circle", "beside it", "beyond the edge", "before it"],
+    ids=[
+        "in the circle",
+        "beside it",
+        "beyond the edge",
+        "before it",
+        "on the strip",
+        "behind it",
+        "in front",
+    ],
 )
 def test_drag_where_it_lies(values, place, on):
     @settings(REPEATABLE, max_examples=8)

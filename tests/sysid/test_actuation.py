@@ -3,6 +3,7 @@
 import pytest
 
 from rr_opt.machines.racer.actuation import actuation_sets
+from rr_opt.model.gait import SineGait
 from tests.sysid.made_up import with_effect
 
 SECOND_ORDER = {"servo_lag.tau": 0.009, "servo_lag.beta": 2.5e-5}
@@ -15,3 +16,20 @@ def test_lag_of_second_order_beside_a_late_clock():
     assert [one.name for one in choices] == ["servo_lag"]
     assert values["servo_lag.tau"] == pytest.approx(0.009, rel=0.02)
     assert values["servo_lag.beta"] == pytest.approx(2.5e-5, rel=0.5)
+
+
+FAST = (
+    (SineGait(0.94, 1.15), "running"),
+    (SineGait(0.76, 0.95, -0.25), "running"),
+    (SineGait(0.49, 0.85, -0.15), "running"),
+    (SineGait(0.97, 1.1, -0.2), "rest"),
+)
+LIMITED = {"servo_rate_limit.rate_limit": 5.1, "clock_offset.offset": -0.008}
+"""Only the last gait is faster than that by more than half a per cent."""
+
+
+def test_rate_limit_that_one_recording_shows():
+    model = with_effect(LIMITED, ("clock_offset", "servo_rate_limit"), gaits=FAST)
+    (choices, values), *_ = actuation_sets(model, range(len(model.runs)))
+    assert [one.name for one in choices] == ["clock_offset", "servo_rate_limit"]
+    assert values == pytest.approx(LIMITED, rel=0.02)

@@ -24,13 +24,21 @@ def doubt(
     none=False,
     foreseen=True,
     suspected=(),
+    after=(),
+    left=0.0,
 ) -> str:
     made: Any = SimpleNamespace(
         best=best,
         suspected=suspected,
+        after=after,
+        share=0.0,
+        final=SimpleNamespace(excess=left),
         _ended=[best, *others],
         selection=SimpleNamespace(
-            base=candidate(), insignificant=lambda _: none, foreseen=foreseen
+            base=candidate(),
+            insignificant=lambda _: none,
+            foreseen=foreseen,
+            model=SimpleNamespace(inputs={"rolling": "a force along the wheels"}),
         ),
         _disagree=constant <= 0.5,
         _hints=lambda: Identification._hints(made),
@@ -85,10 +93,21 @@ def test_nothing_is_said_beside_a_suspicion():
 DISAGREE = "The recordings disagree on the values of the nominal model."
 FIT = "Held-out recordings show the missing physics better than fitted ones: fit them."
 
+TIME: Any = SimpleNamespace(certain=True, channel="rolling", variable="time")
+NOISE: Any = SimpleNamespace(certain=False, channel="rolling", variable="time")
+SLIGHT = (
+    "What remains is slight, but it is not noise: it looks like a force along the wheels that "
+    "depends on time."
+)
+
 
 @pytest.mark.parametrize(
     ("about", "hints"),
     [
+        ({"after": [TIME, NOISE]}, SLIGHT),
+        # What depends on it is told with the remainder.
+        ({"after": [TIME], "left": 1.0}, ""),
+        ({"after": [NOISE]}, FIT),
         ({"constant": 0.1}, DISAGREE),
         ({}, FIT),
         ({"foreseen": False}, FIT),

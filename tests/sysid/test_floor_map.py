@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rr_opt.machines.racer.floor_map import ROUND, STRAIGHT, floor_map, likely, patches
+from rr_opt.machines.racer.floor_map import ROUND, STRAIGHT, STRIP, floor_map, likely, patches
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid import estimation
 from tests.sysid.made_up import base_of, with_effect
@@ -53,7 +53,7 @@ def test_a_patch_all_over_the_floor_is_what_the_wheels_own_friction_is():
 
 def test_no_patch_gains_more_than_luck_where_there_is_none(on_plain_floor):
     floor = floor_map(*on_plain_floor)
-    assert all(gain < 40 for shape in (ROUND, STRAIGHT) for gain, _ in likely(floor, shape))
+    assert all(gain < 40 for shape in (ROUND, STRAIGHT, STRIP) for gain, _ in likely(floor, shape))
 
 
 def test_a_round_patch_is_found_without_a_fit_of_it(on_a_round_one):
@@ -80,6 +80,18 @@ def test_a_straight_one_is_too():
     assert best["floor_patch.multiplier"] == pytest.approx(3.0, rel=0.25)
 
 
+STRIP_ACROSS = {**EDGE, "floor_patch.normal": 0.4, "floor_patch.width": 0.1}
+
+
+def test_a_strip_is_too():
+    best = next(values for form, values in patches(*fitted(STRIP_ACROSS)) if form == 2)
+    into = np.array([math.cos(0.4), math.sin(0.4)])
+    off = [best[f"floor_patch.edge_{k}"] - EDGE[f"floor_patch.edge_{k}"] for k in "xy"]
+    assert best["floor_patch.normal"] == pytest.approx(0.4, abs=0.2)
+    assert off @ into == pytest.approx(0.0, abs=0.03)
+    assert best["floor_patch.width"] == pytest.approx(0.1, abs=0.03)
+
+
 def test_those_proposed_are_unlike(on_a_round_one):
     floor = floor_map(*on_a_round_one)
     for shape, names in ((ROUND, ("x", "y", "radius")), (STRAIGHT, ("normal",))):
@@ -104,6 +116,16 @@ def test_the_direction_of_an_edge_is_told_within_half_a_turn():
     assert model.equivalent(values) is None
     turned = model.equivalent({**values, "floor_patch.normal": 2.2 - 2 * math.pi})
     assert turned == pytest.approx(values)
+
+
+def test_of_the_edges_of_a_strip_one_is_told():
+    model = with_effect({}, ())
+    first = {"floor_patch.multiplier": 3.0, **STRIP_ACROSS}
+    far = np.array([0.1, 0.05]) + 0.1 * np.array([math.cos(0.4), math.sin(0.4)])
+    turned = {"floor_patch.normal": 0.4 - math.pi}
+    other = {**first, **turned, "floor_patch.edge_x": far[0], "floor_patch.edge_y": far[1]}
+    assert model.equivalent(first) is None
+    assert model.equivalent(other) == pytest.approx(first)
 
 
 def test_two_halves_of_a_floor_are_told_as_what_was_believed_and_a_patch():

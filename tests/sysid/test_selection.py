@@ -71,6 +71,14 @@ def test_an_effect_is_compared_with_what_looks_like_it():
     assert all(best.predicts_better(one) for one in cables)
 
 
+def test_slip_is_found_beside_an_effect_that_alone_explains_little():
+    pair = {f"com_offset.d{i}": 0.03 for i in (1, 2)}
+    pair |= {"lateral_slip.creep_compliance": 0.03, "lateral_slip.mu": 0.02}
+    model = with_effect(pair, ("com_offset", "lateral_slip"), gaits=UNLIKE)
+    search = Selection(model, first(model, range(len(model.runs))))
+    assert set(search.run().effects) == {"com_offset", "lateral_slip"}
+
+
 def test_the_search_goes_on_where_recordings_disagree_on_the_values():
     """Either effect alone leaves next to nothing."""
     pair = {"marker_offset.dx": 0.005, "floor_tilt.tilt_x": 2e-4}

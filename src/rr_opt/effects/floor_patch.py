@@ -1,9 +1,9 @@
 """A part of the floor on which the wheels roll harder, or more easily.
 
-It is a circle about (x, y), or, if its radius is 0, everything beyond a straight edge through
-(edge_x, edge_y) in the direction `normal`. Each wheel feels the floor under itself, which
-multiplies its viscous drag and its dry friction, but not a drag that grows with the square of the
-speed, such as that of the air.
+It is a circle about (x, y), or, if its radius is 0, a strip. That begins at a straight edge through
+(edge_x, edge_y) and extends in the direction `normal` over its width, or without end. Each wheel
+feels the floor under itself, which multiplies its viscous drag and its dry friction, but not a drag
+that grows with the square of the speed, such as that of the air.
 
 The border is smoothed over 5 mm, about the length of a wheel's contact with a carpet.
 """
@@ -27,11 +27,15 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
         distance = ca.sqrt(ca.sumsqr(from_centre) + BORDER**2 / 100)
         into = ca.vertcat(ca.cos(values["normal"]), ca.sin(values["normal"]))
         beyond = ca.dot(place - ca.vertcat(values["edge_x"], values["edge_y"]), into)
-        depth = ca.if_else(values["radius"] > 0, values["radius"] - distance, beyond)
-        inside = (1 + ca.tanh(depth / BORDER)) / 2
+        strip = _inside(beyond) * _inside(values["width"] - beyond)
+        inside = ca.if_else(values["radius"] > 0, _inside(values["radius"] - distance), strip)
         return wheel.resistance(u) * (values["multiplier"] - 1) * inside
 
     return with_resistance(mechanism, law)
+
+
+def _inside(depth: ca.SX) -> ca.SX:
+    return (1 + ca.tanh(depth / BORDER)) / 2
 
 
 def _near(operated: OperatingRange) -> float:
@@ -61,9 +65,20 @@ EFFECT = Effect(
         Parameter("normal", "rad", (-2 * math.pi, 2 * math.pi), 0.3),
         Parameter("edge_x", "m", (-100.0, 100.0), 0.3, typical_for=_near, guess_from_data=True),
         Parameter("edge_y", "m", (-100.0, 100.0), 0.3, typical_for=_near),
+        Parameter(
+            *("width", "m", (0.0, 100.0), 0.3),
+            neutral=100.0,
+            typical_for=_near,
+            fit_lower=4 * BORDER,
+            fit_upper=_straight,
+        ),
     ),
     sentence="On part of the floor the wheels roll with more or less resistance than elsewhere.",
     enter=_enter,
-    forms=(("multiplier", "x", "y", "radius"), ("multiplier", "normal", "edge_x", "edge_y")),
+    forms=(
+        ("multiplier", "x", "y", "radius"),
+        ("multiplier", "normal", "edge_x", "edge_y"),
+        ("multiplier", "normal", "edge_x", "edge_y", "width"),
+    ),
     differentiable=False,
 )

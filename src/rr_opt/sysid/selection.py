@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from rr_opt.formatting import words_of
@@ -24,7 +24,7 @@ from rr_opt.sysid.candidates import (
     quantities_of,
     weights,
 )
-from rr_opt.sysid.estimation import predicted
+from rr_opt.sysid.estimation import predicted, solve
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
 from rr_opt.sysid.score_test import Score, scores, with_all
@@ -195,12 +195,18 @@ class Selection:
             found += self._extended()
         if not self._settled(found):
             self.progress("searching for effects without derivatives")
-            found += self._proposed()
+            found += self._proposed(self.best)
         if not (alone and self.complete(alone)) and not self._settled(found):
             found += self._scored(promising, 2)
+        if alone and alone.predicts_better(self.best) and not self._advance(_best(found)):
+            found += self._proposed(alone)
         best = _best(found)
-        if best and best.predicts_better(self.best) and best.advances(self.best):
+        if best and self._advance(best):
             self.best = best
+
+    def _advance(self, found: Candidate | None) -> bool:
+        """Whether a candidate is a step forward."""
+        return bool(found and found.predicts_better(self.best) and found.advances(self.best))
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
         """Whether one more effect is complete and predicts better than all alternatives. If not, it
@@ -221,10 +227,12 @@ class Selection:
         yield from self._added((one.choices, [one.guess]) for one in some)
 
     def _added(
-        self, asked: Iterable[tuple[Sequence[Choice], Sequence[Mapping[str, float]]]]
+        self,
+        asked: Iterable[tuple[Sequence[Choice], Sequence[Mapping[str, float]]]],
+        beside: Candidate | None = None,
     ) -> Iterator[Candidate]:
-        """The best candidate with further effects, given guesses of their values."""
-        parent, every = self.best, [*asked]
+        """A candidate, the best one, with further effects, given guesses of their values."""
+        parent, every = beside or self.best, [*asked]
         self.model.prepare((*parent.effects, *(c.name for c in more)) for more, _ in every)
         for more, guesses in every:
             yield self.fitted((*parent.choices, *more), guesses, parent)
@@ -258,14 +266,14 @@ class Selection:
                 more = [{**known, **_more(guess, own)} for guess in guesses]
                 yield self.fitted((*rest, fuller), more, parent)
 
-    def _proposed(self) -> Iterator[Candidate]:
-        parent = self.best
+    def _proposed(self, parent: Candidate) -> Iterator[Candidate]:
         if len(parent.choices) >= SETTINGS.most_effects:
             return
         guesses: dict[Choice, list[Mapping[str, float]]] = {}
         for choice, guess in self.model.proposals(parent.fit, parent.effects):
             guesses.setdefault(choice, []).append(guess)
-        yield from self._added(((choice,), some) for choice, some in guesses.items())
+        every = [((choice,), some) for choice, some in guesses.items()]
+        yield from self._added(every, parent)
 
     def _refine(self) -> None:
         """Choose the forms that predict best, even if the misfit is already insignificant."""
@@ -299,7 +307,7 @@ class Selection:
             return
         best, every = self.best, [*self._lookalikes()]
         self._contested = best
-        better = [one for one in every if one.predicts_better(best)]
+        better = [one for one in every if not one.given_up and one.elpd > best.elpd]
         self.lookalikes = [one for one in every if one not in better]
         if better:
             self.tried |= {one.choices: one for one in better}
@@ -328,7 +336,7 @@ class Selection:
     @property
     def weighted(self) -> list[tuple[Candidate, float]]:
         """The candidates whose fits ended, with their predictive weights."""
-        ended = [one for one in self.tried.values() if not one.given_up]
+        ended = [one for one in (*self.tried.values(), *self.lookalikes) if not one.given_up]
         return list(zip(ended, weights(ended).tolist(), strict=True))
 
     def alike(self) -> list[Candidate]:
@@ -421,4 +429,5 @@ def turned(model: MachineModel, candidate: Candidate) -> Candidate:
     values = model.equivalent(candidate.fit.values)
     if values is None:
         return candidate
-    return fitted(model, candidate.choices, replace(candidate.fit, values=values), [{}])
+    fit = candidate.fit
+    return Candidate(candidate.choices, solve(fit.problem, values, fit.states))

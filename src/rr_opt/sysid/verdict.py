@@ -21,7 +21,7 @@ from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
 from rr_opt.sysid.intervals import estimates, instead_of, named, wrong
 from rr_opt.sysid.model import Choice
-from rr_opt.sysid.remainder import Dependence
+from rr_opt.sysid.remainder import Dependence, where
 from rr_opt.sysid.selection import Selection
 from rr_opt.sysid.settings import SETTINGS
 
@@ -124,9 +124,13 @@ class Identification:
 
     def _hints(self) -> Iterator[str]:
         """What is known of what is missing if the fitted recordings leave no misfit to explain."""
+        certain = [one for one in self.after if one.certain]
         if self._disagree:
             yield "The recordings disagree on the values of the nominal model."
-        if not (self._disagree and self.selection.foreseen):
+        if certain and remainder_of(self).size == "none":
+            found = where(certain[0], self.selection.model.inputs)
+            yield f"What remains is slight, but it is not noise: it looks like {found}."
+        if not (self.selection.foreseen and (self._disagree or certain)):
             yield "Held-out recordings show the missing physics better than fitted ones: fit them."
 
     @property
@@ -183,7 +187,7 @@ class Identification:
     def _likely(self) -> tuple[Choice, ...]:
         """The effects that are more likely missing than not: each of them, or another one that is
         indistinguishable from it."""
-        alike = self.selection.alike()
+        alike = [*self.selection.alike(), *self.selection.lookalikes]
 
         def likely(name: str) -> float:
             return sum(w for one, w in self._weighted if name in one.effects or one in alike)
@@ -193,16 +197,14 @@ class Identification:
     @property
     def explained(self) -> bool:
         """Whether recordings agree on the answer's values and its misfit, also when fitted to all
-        recordings, is insignificant; or no more than slightly larger noise than stated, without
-        any significant dependence."""
-        if self._disagree:
+        recordings, is insignificant, or no more than slightly larger noise than stated; and nothing
+        is certainly missing."""
+        if self._disagree or any(one.certain for one in self.after):
             return False
         both = (self.best, self.everywhere)
-        if all(self.selection.complete(one) for one in both):
-            return True
-        most = max(one.excess for one in both)
         noisier = (1 + SETTINGS.misstated) ** 2 - 1
-        return most**2 <= noisier and not any(one.certain for one in self.after)
+        slight = max(one.excess for one in both) ** 2 <= noisier
+        return slight or all(self.selection.complete(one) for one in both)
 
     @property
     def share(self) -> float:
@@ -306,9 +308,11 @@ def alike(result: Identification, verdict: Verdict) -> tuple[tuple[str, ...], ..
         return tuple(one for one in both if len(one) > 1)
     if verdict != "missing_physics":
         return ()
-    own = result.best
+    own, catalogue = result.best, result.selection.model.catalogue
     near = []
     for one in result.rivals:
+        if not all(catalogue[name].named for name in one.effects):
+            continue
         gain, error = own.advantage(one)
         if gain < max(SETTINGS.evidence, SETTINGS.standard_errors * error) and one.effects:
             near.append(tuple(one.effects))

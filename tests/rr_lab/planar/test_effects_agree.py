@@ -54,6 +54,11 @@ USES = (
     ("floor_tilt", {"tilt_x": 1e-3, "tilt_y": -5e-4}, SMOOTH),
     ("floor_patch", {"multiplier": 3.0, "x": 0.2, "y": 0.0, "radius": 0.3}, SMOOTH),
     ("floor_patch/edge", {"multiplier": 3.0, "normal": 1.0, "edge_x": 0.2, "edge_y": 0.0}, SMOOTH),
+    (
+        "floor_patch/strip",
+        {"multiplier": 3.0, "normal": 1.0, "edge_x": 0.1, "edge_y": 0.0, "width": 0.15},
+        SMOOTH,
+    ),
     ("com_offset", {"d1": 5e-3, "d2": -8e-3}, SMOOTH),
     ("marker_offset", {"dx": 5e-3, "dy": 3e-3}, SMOOTH),
     ("clock_offset", {"offset": 0.03}, SMOOTH),

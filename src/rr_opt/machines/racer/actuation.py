@@ -27,6 +27,8 @@ _SAMPLES = 6000
 """Samples over all runs: more add nothing."""
 _TRIED = 14
 """Initial values of a non-smooth effect, from next to nothing to a lot."""
+_SHORTFALLS = np.geomspace(0.02, 0.75, _TRIED)
+"""By how much a limit is below the largest value that is asked for, as a share of that."""
 _PAIRED = 2
 """How many of the best single effects are tried in pairs."""
 _PARTS, _SIZES = (1.0, 0.5, 0.25), (0.25, 1.0, 4.0)
@@ -95,7 +97,7 @@ class _RecordedAngle:
 
     @cached_property
     def scanned(self) -> _RecordedAngle:
-        """The same on a few of the runs."""
+        """The same on a few of the runs, the first ones."""
         return replace(self, at=dict([*self.at.items()][:_SCANNED]))
 
 
@@ -123,6 +125,10 @@ def actuation_sets(
     none = _fitted(angle, racer, (), free, [{}])
     if angle.explained(none):
         return [((), {})]
+    # The runs that show most come first: initial values are compared on these.
+    residuals = angle.residuals(none.values, ())
+    shown = sorted(residuals, key=lambda run: -float(residuals[run] @ residuals[run]))
+    angle = replace(angle, at={run: angle.at[run] for run in shown})
 
     def tried(choices: Sequence[Choice]) -> list[_Set]:
         found: list[_Set] = []
@@ -172,7 +178,7 @@ def _guesses(racer: RacerModel, choice: Choice) -> list[dict[str, float]]:
         return [dict(form.guesses[0])]
     # The first quantity decides where the minima are; the others begin where a fit would.
     q = form.quantities[0]
-    sizes = np.geomspace(0.25, 1.0, _TRIED) if q.neutral else np.geomspace(0.05, 5.0, _TRIED)
+    sizes = 1 - _SHORTFALLS if q.neutral else np.geomspace(0.05, 5.0, _TRIED)
     values = np.clip(q.scale * sizes, q.low, q.high).tolist()
     return [{**guess, q.name: value} for value in values for guess in form.guesses]
 

@@ -271,6 +271,29 @@ ROUND = Shape(
     values=lambda of, _: {"x": float(of[0]), "y": float(of[1]), "radius": float(of[2])},
 )
 
+
+def _strips(places: Array) -> Array:
+    size = float(np.ptp(places, axis=1).max())
+    out = []
+    for normal in math.pi * np.arange(_DIRECTIONS // 2) / (_DIRECTIONS // 2):
+        along = np.array([math.cos(normal), math.sin(normal)]) @ places
+        middles = np.linspace(along.min(), along.max(), _BORDERS // 2 + 2)[1:-1]
+        out += [(normal, at, size * r) for at in middles for r in _RADII]
+    return np.array(out)
+
+
+def _strip_depth(of: Array) -> Depth:
+    half = of[2] / 2
+    return lambda x, y: half - np.abs(x * math.cos(of[0]) + y * math.sin(of[0]) - of[1])
+
+
+def _strip_values(of: Array, middle: Array) -> Mapping[str, float]:
+    edge = _edge_values(np.array([of[0], of[1] - of[2] / 2]), middle)
+    return {**edge, "width": float(of[2])}
+
+
+STRIP = Shape(_strip_depth, _strips, _strip_values)
+
 STRAIGHT = Shape(
     depth=lambda of: lambda x, y: x * math.cos(of[0]) + y * math.sin(of[0]) - of[1],
     grid=_edge_grid,
@@ -279,11 +302,11 @@ STRAIGHT = Shape(
 
 
 def patches(racer: RacerModel, fit: Fit) -> list[tuple[int, Mapping[str, float]]]:
-    """Patches that would gain most, by their form: round ones and straight edges; best first."""
+    """Patches that would gain most, by their form: circles, edges and strips; best first."""
     floor = floor_map(racer, fit)
     found = [
         (gain, form, {f"floor_patch.{key}": value for key, value in values.items()})
-        for form, shape in enumerate((ROUND, STRAIGHT))
+        for form, shape in enumerate((ROUND, STRAIGHT, STRIP))
         for gain, values in likely(floor, shape)
         if gain > 2 * SETTINGS.evidence
     ]

@@ -52,11 +52,14 @@ class RollerRacer(RacerModel):
     def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """The two halves of a floor exchanged: which is the usual one, and which the patch.
 
-        Or not exchanged, with the edge's direction wrapped to half a turn either way.
+        Or not exchanged, with the edge's direction wrapped to half a turn either way. Of the edges
+        of a strip, the one whose direction is at most a quarter turn.
         """
         if "floor_patch.normal" not in values:
             return None
         normal = math.remainder(values["floor_patch.normal"], math.tau)
+        if "floor_patch.width" in values:
+            return _first_edge(values, normal)
         factor = values["floor_patch.multiplier"]
         own = [name for name in ("kappa1", "kappa2") if name in values]
         away = sum(math.log(values[name] / self.nominal[name]) for name in own)
@@ -81,6 +84,16 @@ class RollerRacer(RacerModel):
     def accuracy(self, misfits: Sequence[Misfit]) -> str:
         """The same, of the corrected simulation."""
         return f"The corrected position is {_off(misfits)} off (RMS beyond the noise)."
+
+
+def _first_edge(values: Mapping[str, float], normal: float) -> Mapping[str, float] | None:
+    across = values["floor_patch.width"] if abs(normal) > math.pi / 2 else 0.0
+    moved = {
+        "floor_patch.normal": math.remainder(normal + math.pi, math.tau) if across else normal,
+        "floor_patch.edge_x": values["floor_patch.edge_x"] + across * math.cos(normal),
+        "floor_patch.edge_y": values["floor_patch.edge_y"] + across * math.sin(normal),
+    }
+    return None if moved.items() <= values.items() else {**values, **moved}
 
 
 def _off(misfits: Sequence[Misfit]) -> str:

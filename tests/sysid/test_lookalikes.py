@@ -1,0 +1,59 @@
+"""An effect has to predict as well as what looks like it, and shares its weight with that."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rr_opt.sysid.selection import Selection
+
+RUNS = range(6)
+
+
+def candidate(effect: str, elpd: float, *, given_up: bool = False) -> Any:
+    """Recordings that are each predicted as well."""
+    return SimpleNamespace(
+        choices=(effect,),
+        effects=(effect,),
+        elpd=elpd,
+        given_up=given_up,
+        predictive=dict.fromkeys(RUNS, elpd / len(RUNS)),
+    )
+
+
+FRICTION = candidate("friction", 0.0)
+
+
+class Contest(Selection):
+    def __init__(self, *lookalikes: Any) -> None:
+        self.best = FRICTION
+        self.tried = {FRICTION.choices: FRICTION}
+        self.made = lookalikes
+
+    def _lookalikes(self) -> Any:
+        return self.made
+
+    def _backward(self, needed: Any) -> None:
+        assert needed == self.needed
+
+
+def contested(*lookalikes: Any) -> Contest:
+    search = Contest(*lookalikes)
+    search._contest()
+    return search
+
+
+@pytest.mark.parametrize(("gain", "winner"), [(1.0, "cable"), (-1.0, "friction")])
+def test_the_better_one_wins(gain, winner):
+    wax = candidate("wax", 9.0, given_up=True)
+    search = contested(candidate("cable", gain), wax)
+    assert search.best.effects == (winner,)
+    assert wax not in [one for one, _ in search.weighted]
+
+
+@pytest.mark.parametrize("gain", [1.0, -1.0])
+def test_both_share_the_weight(gain):
+    search = contested(candidate("cable", gain))
+    weights = {one.effects[0]: weight for one, weight in search.weighted}
+    assert sum(weights.values()) == pytest.approx(1.0)
+    assert 0.5 < weights[search.best.effects[0]] < 0.8
