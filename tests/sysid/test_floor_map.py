@@ -7,7 +7,9 @@ import pytest
 
 from rr_opt.machines.racer.floor_map import ROUND, STRAIGHT, STRIP, floor_map, likely, patches
 from rr_opt.model.gait import SineGait
-from rr_opt.sysid import estimation
+from rr_opt.sysid import candidates, estimation
+from rr_opt.sysid.model import Choice
+from rr_opt.sysid.selection import turned
 from tests.sysid.made_up import base_of, with_effect
 
 ROUND_ONE = {
@@ -81,6 +83,12 @@ def test_a_straight_one_is_too():
 
 
 STRIP_ACROSS = {**EDGE, "floor_patch.normal": 0.4, "floor_patch.width": 0.1}
+BY_ITS_OTHER_EDGE = {
+    **STRIP_ACROSS,
+    "floor_patch.normal": 0.4 - math.pi,
+    "floor_patch.edge_x": 0.1 + 0.1 * math.cos(0.4),
+    "floor_patch.edge_y": 0.05 + 0.1 * math.sin(0.4),
+}
 
 
 def test_a_strip_is_too():
@@ -114,18 +122,25 @@ def test_the_direction_of_an_edge_is_told_within_half_a_turn():
     model = with_effect({}, ())
     values = {"kappa1": 4e-6, "kappa2": 4e-6, **EDGE}
     assert model.equivalent(values) is None
-    turned = model.equivalent({**values, "floor_patch.normal": 2.2 - 2 * math.pi})
-    assert turned == pytest.approx(values)
+    wrapped = model.equivalent({**values, "floor_patch.normal": 2.2 - 2 * math.pi})
+    assert wrapped == pytest.approx(values)
 
 
 def test_of_the_edges_of_a_strip_one_is_told():
     model = with_effect({}, ())
-    first = {"floor_patch.multiplier": 3.0, **STRIP_ACROSS}
-    far = np.array([0.1, 0.05]) + 0.1 * np.array([math.cos(0.4), math.sin(0.4)])
-    turned = {"floor_patch.normal": 0.4 - math.pi}
-    other = {**first, **turned, "floor_patch.edge_x": far[0], "floor_patch.edge_y": far[1]}
-    assert model.equivalent(first) is None
-    assert model.equivalent(other) == pytest.approx(first)
+    assert model.equivalent(STRIP_ACROSS) is None
+    assert model.equivalent(BY_ITS_OTHER_EDGE) == pytest.approx(STRIP_ACROSS)
+
+
+def test_the_other_edge_of_a_strip_is_the_same_fit():
+    model = with_effect(STRIP_ACROSS, ("floor_patch",))
+    base = base_of(model).fit
+    found = candidates.fitted(model, (Choice("floor_patch", 2),), base, [BY_ITS_OTHER_EDGE])
+    again = turned(model, found)
+    one, other = (fit.values["floor_patch.normal"] for fit in (found.fit, again.fit))
+    assert abs(one) > math.pi / 2
+    assert other == pytest.approx(one + math.pi, abs=0.01)
+    assert again.fit.deviance == pytest.approx(found.fit.deviance, abs=1.0)
 
 
 def test_two_halves_of_a_floor_are_told_as_what_was_believed_and_a_patch():

@@ -6,7 +6,8 @@ segments -> estimation -> selection -> intervals, remainder -> verdict
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from rr_opt.sysid.candidates import Candidate, first, refitted, settled
@@ -38,24 +39,16 @@ class Stopwatch:
     progress: Callable[[str], None] = lambda _: None
     seconds: dict[str, float] = field(default_factory=dict)
 
-    def __call__(self, step: str) -> _Timed:
+    @contextmanager
+    def __call__(self, step: str) -> Iterator[None]:
         """Time a step."""
         self.progress(step)
-        return _Timed(self, step)
-
-
-@dataclass
-class _Timed:
-    watch: Stopwatch
-    step: str
-    began: float = 0.0
-
-    def __enter__(self) -> None:
-        self.began = time.perf_counter()
-
-    def __exit__(self, *_: object) -> None:
-        spent = time.perf_counter() - self.began
-        self.watch.seconds[self.step] = self.watch.seconds.get(self.step, 0.0) + spent
+        began = time.perf_counter()
+        try:
+            yield
+        finally:
+            spent = time.perf_counter() - began
+            self.seconds[step] = self.seconds.get(step, 0.0) + spent
 
 
 def diagnose(model: MachineModel, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:

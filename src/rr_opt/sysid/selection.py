@@ -184,7 +184,8 @@ class Selection:
 
     def _forward(self) -> None:
         """A forward step; the search is widened until one candidate clearly wins: two effects are
-        tried at once only where no single one does."""
+        tried at once only where no single one does, and proposals beside the best single one only
+        where those are no step forward either."""
         self.progress("testing candidate effects")
         promising = self._promising()
         found = [*self._scored(promising, 1)]
