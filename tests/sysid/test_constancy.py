@@ -20,7 +20,6 @@ class LinearFit:
 
     J: list
     y: list
-    chance: float = 0.0
     problem: SimpleNamespace = field(init=False)
 
     def __post_init__(self):
@@ -52,16 +51,6 @@ def drawn(rng, spread=0.0):
 
 def constancy_of(fit, explained=0.0, form=0.0, left=0.0):
     return constancy(fit, left, dict.fromkeys(range(RUNS), explained), {"drag": form})
-
-
-def test_what_noise_may_hide_counts_like_a_misfit():
-    fit = drawn(np.random.default_rng(0), 0.1)
-    plain, left = constancy_of(fit), constancy_of(fit, left=0.1)
-    fit.chance = 0.1**2
-    assert constancy_of(fit) == left
-    assert left.statistic < 0.98 * plain.statistic
-    fit.chance = 2 * FORM**2
-    assert constancy_of(fit) == constancy_of(fit, left=FORM)
 
 
 def test_as_large_as_expected_where_values_are_constant():

@@ -9,10 +9,10 @@ score at the optimum of the others is
 
 No machine matches its model exactly, though. F is the variance of an effect's values due to its
 form error e. The motion deviates, over about a correlation time, by the share e of what the effect
-explains of the run, m (RMS in sigma), and by f, what noise may hide of a misfit, and without an
-effect the misfit too, as far as machines of this kind differ from any model: phi = 1 + ((e m)^2 +
-f^2) n/K with the samples n and correlation times K of the run. C is A with each of the other runs
-weighted by its own phi. Values at a bound are taken as known.
+explains of the run, m (RMS in sigma), or, without an effect, by f, the misfit as far as machines
+of this kind differ from any model: phi = 1 + ((e m)^2 + f^2) n/K with the samples n and
+correlation times K of the run. C is A with each of the other runs weighted by its own phi. Values
+at a bound are taken as known.
 
 T, the sum of s' Var^-1 s over all runs, has expectation k, the number of values that each run
 determines, summed over runs. If the values are not constant, T is larger by an unknown factor with
@@ -95,11 +95,10 @@ def constancy(
     spread = L.T * units @ np.diag((form * values)[free])
     F = spread @ spread.T
     share = max(form_errors.values(), default=0.0)
-    deviation = min(left**2 + fit.chance, problem.model.form_error**2)
     B, phi = {}, {}
     for run, one in fit.evidences.items():
         B[run] = within(within(one.H[free][:, free]).T)
-        off = share**2 * explained.get(run, 0.0) + deviation
+        off = share**2 * explained.get(run, 0.0) + min(left, problem.model.form_error) ** 2
         phi[run] = overdispersion(problem, run, off)
     unit = np.eye(len(H))
     every = unit + sum(((phi[run] - 1) * B[run] for run in B), np.zeros_like(H))

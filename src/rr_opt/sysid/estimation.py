@@ -456,12 +456,6 @@ class Fit:
         return sum(e.samples for e in self.evidences.values())
 
     @property
-    def chance(self) -> float:
-        """How far beyond the noise the misfit may be by chance, mean square in sigma: two standard
-        deviations of chi-square."""
-        return 2 * math.sqrt(2 / max(self.samples, 1))
-
-    @property
     def excess(self) -> float:
         """Misfit beyond the noise, RMS in sigma."""
         beyond = sum(e.excess for e in self.evidences.values())

@@ -9,6 +9,7 @@ values.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -103,8 +104,9 @@ class Selection:
     def insignificant(self, candidate: Candidate) -> bool:
         """Whether its misfit over whole runs is within the tolerance (`none` with effects,
         `negligible` without), the machine's form error and chance together."""
+        chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
-        most = least**2 + self.model.form_error**2 + candidate.fit.chance
+        most = least**2 + self.model.form_error**2 + chance
         # Segments that need not join have a smaller misfit than whole runs.
         return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
 
