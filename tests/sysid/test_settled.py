@@ -92,7 +92,7 @@ def test_two_effects_are_tried_where_no_single_one_wins(alone, pairs):
         def _extended(self) -> Any:
             return []
 
-        def _proposed(self) -> Any:
+        def _proposed(self, parent) -> Any:
             return [Made((Choice("slip"),), alone)]
 
     selection = Imitated(elpd=-50.0)
@@ -129,7 +129,8 @@ def test_a_step_that_leaves_about_as_much_is_not_taken(whole, segments, taken):
         def _extended(self) -> Any:
             return []
 
-        _proposed = _extended
+        def _proposed(self, parent) -> Any:
+            return []
 
     class Advancing(Made):
         def advances(self, _) -> bool:

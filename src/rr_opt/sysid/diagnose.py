@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from rr_opt.sysid.candidates import Candidate, first, refitted, settled
 from rr_opt.sysid.diagnosis import Diagnosis, summary_of
 from rr_opt.sysid.evaluation import evaluation, mismatch
-from rr_opt.sysid.intervals import estimates, released
+from rr_opt.sysid.intervals import estimates, released, wrong
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.noise import noise_in
@@ -142,7 +142,7 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
     with watch("locating the fault"):
         before = dependences(base, *selection.model.unknown_inputs(base))
         after = before
-        if best.choices:
+        if best.choices or wrong(best.fit):
             after = dependences(best.fit, *selection.model.unknown_inputs(best.fit))
     return replace(result, before=before, after=after)
 
