@@ -232,7 +232,8 @@ class Selection:
         asked: Iterable[tuple[Sequence[Choice], Sequence[Mapping[str, float]]]],
         beside: Candidate | None = None,
     ) -> Iterator[Candidate]:
-        """A candidate, the best one, with further effects, given guesses of their values."""
+        """A candidate, the best unless another is given, with further effects, started from guesses
+        of their values."""
         parent, every = beside or self.best, [*asked]
         self.model.prepare((*parent.effects, *(c.name for c in more)) for more, _ in every)
         for more, guesses in every:
