@@ -1,7 +1,7 @@
 """A part of the floor on which the wheels roll harder, or more easily.
 
-It is a circle about (x, y), or, if its radius is 0, a strip. That begins at a straight edge through
-(edge_x, edge_y) and extends in the direction `normal` over its width, or without end. Each wheel
+It is a circle about (x, y) or, if its radius is 0, a strip that starts at a straight edge through
+(edge_x, edge_y) and extends from there along `normal`, for its width or without end. Each wheel
 feels the floor under itself, which multiplies its viscous drag and its dry friction, but not a drag
 that grows with the square of the speed, such as that of the air.
 

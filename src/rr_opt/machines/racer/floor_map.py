@@ -10,7 +10,7 @@ predicted robot would drive on.
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -245,13 +245,16 @@ def _circles(places: Array) -> Array:
     return np.array([(*at, size * r) for *at, r in itertools.product(x, y, _RADII)])
 
 
-def _edge_grid(places: Array) -> Array:
-    out = []
-    for normal in 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS - math.pi:
+def _lines(places: Array, normals: Array, count: int) -> Iterator[tuple[float, float]]:
+    """Straight lines across the floor where wheels were: the normal, rad, and how far along it."""
+    for normal in normals:
         along = np.array([math.cos(normal), math.sin(normal)]) @ places
-        borders = np.linspace(along.min(), along.max(), _BORDERS + 2)[1:-1]
-        out += [(normal, border) for border in borders]
-    return np.array(out)
+        yield from ((normal, at) for at in np.linspace(along.min(), along.max(), count + 2)[1:-1])
+
+
+def _edge_grid(places: Array) -> Array:
+    normals = 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS - math.pi
+    return np.array([*_lines(places, normals, _BORDERS)])
 
 
 def _edge_values(of: Array, middle: Array) -> Mapping[str, float]:
@@ -271,20 +274,23 @@ ROUND = Shape(
     values=lambda of, _: {"x": float(of[0]), "y": float(of[1]), "radius": float(of[2])},
 )
 
+STRAIGHT = Shape(
+    depth=lambda of: lambda x, y: x * math.cos(of[0]) + y * math.sin(of[0]) - of[1],
+    grid=_edge_grid,
+    values=_edge_values,
+)
+
 
 def _strips(places: Array) -> Array:
     size = float(np.ptp(places, axis=1).max())
-    out = []
-    for normal in math.pi * np.arange(_DIRECTIONS // 2) / (_DIRECTIONS // 2):
-        along = np.array([math.cos(normal), math.sin(normal)]) @ places
-        middles = np.linspace(along.min(), along.max(), _BORDERS // 2 + 2)[1:-1]
-        out += [(normal, at, size * r) for at in middles for r in _RADII]
-    return np.array(out)
+    normals = math.pi * np.arange(_DIRECTIONS // 2) / (_DIRECTIONS // 2)
+    lines = _lines(places, normals, _BORDERS // 2)
+    return np.array([(*line, size * r) for line in lines for r in _RADII])
 
 
 def _strip_depth(of: Array) -> Depth:
-    half = of[2] / 2
-    return lambda x, y: half - np.abs(x * math.cos(of[0]) + y * math.sin(of[0]) - of[1])
+    from_middle = STRAIGHT.depth(of)
+    return lambda x, y: of[2] / 2 - np.abs(from_middle(x, y))
 
 
 def _strip_values(of: Array, middle: Array) -> Mapping[str, float]:
@@ -293,12 +299,6 @@ def _strip_values(of: Array, middle: Array) -> Mapping[str, float]:
 
 
 STRIP = Shape(_strip_depth, _strips, _strip_values)
-
-STRAIGHT = Shape(
-    depth=lambda of: lambda x, y: x * math.cos(of[0]) + y * math.sin(of[0]) - of[1],
-    grid=_edge_grid,
-    values=_edge_values,
-)
 
 
 def patches(racer: RacerModel, fit: Fit) -> list[tuple[int, Mapping[str, float]]]:
