@@ -1,5 +1,7 @@
 """A run is predicted as exactly with the steps it gets as with shorter ones."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,11 @@ from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer import drive as racer_steps
 from rr_opt.machines.racer.drive import steps_of
 from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.machines.racer.simulation import driven
 from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
+from rr_opt.sysid.model import Request, segments
+from rr_opt.sysid.shooting import predict
 from tests.sysid.made_up import experiment, predicted
 
 VALUES = {
@@ -43,6 +48,35 @@ def test_as_with_steps_of_half_a_millisecond(effect, monkeypatch):
         start = np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
         paths.append(predicted(model, 1, values, (effect,), start))
     assert paths[0] == pytest.approx(paths[1], abs=1e-4)
+
+
+def test_sliding_wheels_take_shorter_steps_than_creeping_ones():
+    model, effects = RollerRacer(experiment()), ("lateral_slip",)
+    start, segment = np.zeros(6), segments({0: model.runs[0]})[0]
+    steps = []
+    for mu in (10.0, 0.1):
+        values = {"lateral_slip.creep_compliance": 0.01, "lateral_slip.mu": mu}
+        ((path, *_),) = model.simulator.paths([Request(segment, values, start)], effects)
+        steps.append(path.each)
+    assert steps == [8, 16]
+
+
+def test_neutral_parameters_are_left_out_of_what_is_predicted():
+    model, effects = RollerRacer(experiment(seconds=3.0)), ("lateral_slip",)
+    plain, whole = driven(effects, frozenset({"lateral_slip.mu_ratio"}))[0], driven(effects)[0]
+    assert plain.rates.n_instructions() < 0.8 * whole.rates.n_instructions()
+    segment = segments({0: model.runs[0]})[0]
+    values = {"lateral_slip.creep_compliance": 0.01, "lateral_slip.mu": 0.012}
+    request = Request(segment, values, np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0]))
+    ((path, made, p, _),) = model.simulator.paths([request], effects)
+    assert made.states == pytest.approx(predict(whole, path, request.state, p).states, abs=1e-12)
+    rolling, sliding = (
+        model.simulator.paths(
+            [replace(request, values={**values, "lateral_slip.mu_ratio": e})], effects
+        )
+        for e in (0.0, 1.0)
+    )
+    assert np.abs(rolling[0][1].states - sliding[0][1].states).max() > 1e-4
 
 
 def test_a_step_ends_where_the_rate_jumps():

@@ -55,6 +55,10 @@ class Parameter:
     model_form_sigma  relative spread of its value between real machines, 1 sigma
     fit_lower         a fit goes no lower: there the effect turns into another
     fit_upper         a fit goes no higher, for a given operating range
+    costly            its terms take as long to evaluate as all others: while it is neutral,
+                      predictions leave them out
+    sharp             while it is not neutral, the force bends so sharply with the speed that
+                      predictions need the shortest steps
     """
 
     name: str
@@ -69,6 +73,8 @@ class Parameter:
     model_form_sigma: float = 0.0
     fit_lower: float = -math.inf
     fit_upper: Callable[[OperatingRange], float] | None = None
+    costly: bool = False
+    sharp: bool = False
 
     def magnitude(self, operated: OperatingRange) -> float:
         """Usual magnitude for an operating range."""
@@ -135,6 +141,11 @@ class Effect:
     form_error: float = 0.02
     lookalikes: tuple[str, ...] = ()
     unmodelled: tuple[str, ...] = ()
+
+    @property
+    def sharpening(self) -> list[Parameter]:
+        """The parameters that are sharp."""
+        return [q for q in self.parameters if q.sharp]
 
     def actuated(
         self,

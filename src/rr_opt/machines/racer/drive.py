@@ -4,6 +4,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypedDict
 
 import numpy as np
 
@@ -16,9 +17,9 @@ from rr_opt.motion.floor_motion import free_joint_of
 from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
-_LONGEST, _SHARP, _STIFF = 0.012, 0.003, 0.0015
-"""Longest step, s: in general, with dry friction, and with wheels that slip: with twice the last,
-derivatives across the onset of sliding are off by a factor."""
+_LONGEST, _SHARP, _SHARPEST = 0.012, 0.003, 0.0015
+"""Longest step, s: in general, with dry friction or wheels that creep, and with wheels that slide:
+with twice the last, derivatives across the onset of sliding are off by a factor."""
 _APART = 1e-6
 """A jump of dphi this near to the end of a step, s, counts as at it."""
 _MOST = 3
@@ -37,14 +38,20 @@ class Steps:
     stiff: bool
 
 
+class Grain(TypedDict):
+    """How a prediction is stepped."""
+
+    stiff: bool
+    longest: float
+
+
 def steps_of(
-    drive: Drive, t: Array, late: float, *, stiff: bool = False, sharp: bool = False
+    drive: Drive, t: Array, late: float, *, stiff: bool = False, longest: float = _LONGEST
 ) -> Steps:
     """Steps between the samples t; where dphi jumps, one ends and the next begins.
 
     Not with stiff states: there the effect of a jump is spread over its step.
     """
-    longest = _STIFF if stiff else _SHARP if sharp else _LONGEST
     jumps = drive.jumps_within(t[0] + late, t[-1] + late) - late if not stiff else np.zeros(0)
     k = np.searchsorted(t, jumps, side="right") - 1
     inside = (jumps - t[k] > _APART) & (t[k + 1] - jumps > _APART)
@@ -189,7 +196,7 @@ def drive_slopes(
     if not moving:
         return None
     here = drives.of(run, given, effects)
-    steps = steps_of(here, t, lateness(given, effects), **grain(effects))
+    steps = steps_of(here, t, lateness(given, effects), **grain(given, effects))
 
     def path_at(values: Mapping[str, float]) -> DrivePath:
         # On the very steps used for prediction, with one rate per step where dphi jumps, so that a
@@ -224,13 +231,14 @@ def joint_of(given: Mapping[str, float]) -> FreeJoint:
     return free_joint_of(lambda parameters: values_of(given, parameters))
 
 
-def grain(effects: Sequence[str]) -> dict[str, bool]:
-    """Whether some states are stiff, and whether some forces jump with the speed."""
+def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
+    """Whether some states are stiff, and the longest step, s."""
     every = [CATALOGUE[name] for name in effects]
-    return {
-        "stiff": any(one.stiff for one in every),
-        "sharp": any(one.near_discontinuous for one in every),
-    }
+    stiff = any(one.stiff for one in every)
+    if any(given[f"{one.name}.{q.name}"] != q.neutral for one in every for q in one.sharpening):
+        return {"stiff": stiff, "longest": _SHARPEST}
+    sharp = stiff or any(one.near_discontinuous for one in every)
+    return {"stiff": stiff, "longest": _SHARP if sharp else _LONGEST}
 
 
 def neighbours(

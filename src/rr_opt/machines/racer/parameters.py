@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -33,13 +33,18 @@ ZEROS = {f"{ZERO_OFFSET}.{name}": f"{name}_zero" for name in ("psi", "phi")}
 def nominal(experiment: Experiment) -> dict[str, float]:
     """Every value of the robot and of all effects, SI; absent effects are neutral."""
     robot = experiment.robot
+    zeros = dict.fromkeys(ZEROS.values(), 0.0)
+    return parameters_of(robot) | effect_values(robot.physics) | zeros
+
+
+def effect_values(physics: Iterable[EffectUse]) -> dict[str, float]:
+    """Every value of all effects, SI; absent effects are neutral."""
     neutral = {
         f"{effect.name}.{q.name}": q.neutral
         for effect in CATALOGUE.values()
         for q in effect.parameters
     }
-    given = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
-    return parameters_of(robot) | neutral | given | dict.fromkeys(ZEROS.values(), 0.0)
+    return neutral | {f"{use.name}.{name}": v for use in physics for name, v in use.values.items()}
 
 
 def uncertain(experiment: Experiment, setting: OperatingRange) -> tuple[Quantity, ...]:

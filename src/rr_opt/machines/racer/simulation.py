@@ -10,12 +10,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
+import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer.drive import (
     Drives,
+    Grain,
     drive_path,
     drive_slopes,
     grain,
@@ -39,10 +41,38 @@ V = 3
 
 
 @lru_cache
-def driven(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
-    """The motion with these effects, the same for every recording."""
+def driven(
+    effects: tuple[str, ...], idle: frozenset[str] = frozenset()
+) -> tuple[System, FloorMotion]:
+    """The motion with these effects, the same for every recording; without the terms of costly
+    parameters that are idle: neutral."""
     motion = floor_motion(effects)
-    return System(motion.rates, motion.observed, stiff_states(motion), lasts=True), motion
+    rates = _without(motion, idle) if idle else motion.rates
+    return System(rates, motion.observed, stiff_states(motion), lasts=True), motion
+
+
+def _without(motion: FloorMotion, idle: frozenset[str]) -> ca.Function:
+    """The rates without the terms of some parameters."""
+    neutral, (state, drive, p) = _costly(motion.effects), motion.rates.sx_in()
+    known = (neutral[one] if one in idle else p[k] for k, one in enumerate(motion.parameters))
+    rates = ca.substitute(motion.rates(state, drive, p), p, ca.vertcat(*known))
+    return ca.Function("rates", [state, drive, p], [ca.cse(ca.simplify(rates))])
+
+
+def _costly(effects: tuple[str, ...]) -> dict[str, float]:
+    """The costly parameters, and where they are neutral."""
+    every = ((name, q) for name in effects for q in CATALOGUE[name].parameters)
+    return {f"{name}.{q.name}": q.neutral for name, q in every if q.costly}
+
+
+def _shortest(
+    effects: tuple[str, ...], every: Iterable[Mapping[str, float]], wanted: tuple[str, ...] = ()
+) -> tuple[System, FloorMotion]:
+    """The motion with few terms that serves all of these values and derivatives."""
+    costly = {name: at for name, at in _costly(effects).items() if name not in wanted}
+    values = [*every]
+    idle = (name for name, at in costly.items() if all(given[name] == at for given in values))
+    return driven(effects, frozenset(idle))
 
 
 def stiff_states(motion: FloorMotion) -> int:
@@ -83,7 +113,7 @@ class _DrivenRun:
 
     given: Mapping[str, float]
     drive: Drive
-    late: float
+    clock: tuple[float, Grain]
     effects: tuple[str, ...]
     path: DrivePath
 
@@ -154,12 +184,13 @@ class Simulator:
         if kept and kept.given is given and kept.effects == effects:
             return kept
         drive, late = self.drives.of(run, given, effects), lateness(given, effects)
-        if kept and kept.drive is drive and (kept.late, kept.effects) == (late, effects):
+        clock = late, grain(given, effects)
+        if kept and kept.drive is drive and (kept.clock, kept.effects) == (clock, effects):
             path = kept.path
         else:
-            steps = steps_of(drive, self._data[run].t, late, **grain(effects))
+            steps = steps_of(drive, self._data[run].t, late, **clock[1])
             path = drive_path(drive, steps, late)
-        self._driven[run] = _DrivenRun(given, drive, late, effects, path)
+        self._driven[run] = _DrivenRun(given, drive, clock, effects, path)
         return self._driven[run]
 
     def drive_slopes(
@@ -189,7 +220,9 @@ class Simulator:
 
     def prepare(self, every: Iterable[tuple[str, ...]]) -> None:
         """Compile the motion with each of these sets of effects ahead."""
-        prepare((driven(self.every(one))[0] for one in every), driven(self.every(()))[0])
+        sets = [self.every(one) for one in (*every, ())]
+        *ahead, plain = (driven(one, frozenset(_costly(one)))[0] for one in sets)
+        prepare(ahead, plain)
 
     def simulate(
         self, requests: Sequence[Request], effects: tuple[str, ...]
@@ -205,7 +238,6 @@ class Simulator:
     ) -> Sequence[Linearisation]:
         """Linearise segments; see `sysid.model.Model`."""
         mechanical = self.every(effects)
-        system, motion = driven(mechanical)
         sought, paths = [], self.paths(requests, effects)
         known = {
             (one.segment.run, id(each[3])): each[3]
@@ -217,6 +249,7 @@ class Simulator:
             for values in neighbours(given, mechanical, wanted)
         ]
         self.drives.every(beside, mechanical)
+        system, motion = _shortest(mechanical, known.values(), wanted)
         by = {id(given): values_by(given, motion.parameters, wanted) for given in known.values()}
         for one, (path, made, p, given) in zip(requests, paths, strict=True):
             drive_by = self.drive_slopes(one.segment, given, mechanical, wanted)
@@ -236,12 +269,12 @@ class Simulator:
 
     def _simulated(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:
         mechanical = self.every(effects)
-        system, motion = driven(mechanical)
         # Most segments that are requested together have the same values.
-        known = {}
-        for values in {id(one.values): one.values for one in requests}.values():
-            given = self.given(values)
-            known[id(values)] = given, values_of(given, motion.parameters)
+        distinct = {id(one.values): self.given(one.values) for one in requests}
+        system, motion = _shortest(mechanical, distinct.values())
+        known = {
+            key: (given, values_of(given, motion.parameters)) for key, given in distinct.items()
+        }
         asked = {(one.segment.run, id(one.values)) for one in requests}
         self.drives.every([(run, known[values][0]) for run, values in asked], mechanical)
         ready = []
