@@ -88,7 +88,7 @@ class Near(Selection):
 
     def _backward(self, needed) -> None: ...
 
-    _refine = _substitute = _polish = _contest = lambda _: None
+    _refine = _substitute = _contest = lambda _: None
 
     def _simplest(self) -> Any:
         return self.best

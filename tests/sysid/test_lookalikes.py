@@ -6,28 +6,30 @@ from typing import Any
 import pytest
 
 from rr_opt.sysid.selection import Selection
+from rr_opt.sysid.settings import SETTINGS
 
 RUNS = range(6)
 
 
-def candidate(effect: str, elpd: float, *, given_up: bool = False) -> Any:
+def candidate(*effects: str, elpd: float, given_up: bool = False) -> Any:
     """Recordings that are each predicted as well."""
     return SimpleNamespace(
-        choices=(effect,),
-        effects=(effect,),
+        choices=effects,
+        effects=effects,
         elpd=elpd,
         given_up=given_up,
         predictive=dict.fromkeys(RUNS, elpd / len(RUNS)),
+        predicts_better=lambda other: elpd > other.elpd + SETTINGS.evidence,
     )
 
 
-FRICTION = candidate("friction", 0.0)
+FRICTION = candidate("friction", elpd=0.0)
 
 
 class Contest(Selection):
-    def __init__(self, *lookalikes: Any) -> None:
-        self.best = FRICTION
-        self.tried = {FRICTION.choices: FRICTION}
+    def __init__(self, *lookalikes: Any, answer: Any = FRICTION) -> None:
+        self.best = answer
+        self.tried = {answer.choices: answer}
         self.made = lookalikes
 
     def _lookalikes(self) -> Any:
@@ -45,15 +47,22 @@ def contested(*lookalikes: Any) -> Contest:
 
 @pytest.mark.parametrize(("gain", "winner"), [(1.0, "cable"), (-1.0, "friction")])
 def test_the_better_one_wins(gain, winner):
-    wax = candidate("wax", 9.0, given_up=True)
-    search = contested(candidate("cable", gain), wax)
+    wax = candidate("wax", elpd=9.0, given_up=True)
+    search = contested(candidate("cable", elpd=gain), wax)
     assert search.best.effects == (winner,)
     assert wax not in [one for one, _ in search.weighted]
 
 
+@pytest.mark.parametrize(("gain", "winner"), [(-1.0, ("cable",)), (-9.0, ("drag", "friction"))])
+def test_one_effect_is_better_than_two_that_predict_about_as_well(gain, winner):
+    search = Contest(candidate("cable", elpd=gain), answer=candidate("drag", "friction", elpd=0.0))
+    search._contest()
+    assert search.best.effects == winner
+
+
 @pytest.mark.parametrize("gain", [1.0, -1.0])
 def test_both_share_the_weight(gain):
-    search = contested(candidate("cable", gain))
+    search = contested(candidate("cable", elpd=gain))
     weights = {one.effects[0]: weight for one, weight in search.weighted}
     assert sum(weights.values()) == pytest.approx(1.0)
     assert 0.5 < weights[search.best.effects[0]] < 0.8

@@ -6,7 +6,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import first
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.intervals import released, wrong
-from rr_opt.sysid.model import Choice
+from rr_opt.sysid.model import ChannelNoise, Choice
 from rr_opt.sysid.selection import Selection
 from tests.sysid.made_up import with_effect
 
@@ -69,6 +69,32 @@ def test_an_effect_is_compared_with_what_looks_like_it():
     assert not set(search.lookalikes) & set(search.tried.values())
     cables = [one for one in search.lookalikes if one.effects == ("dragged_cable",)]
     assert all(best.predicts_better(one) for one in cables)
+
+
+def test_a_lookalike_is_tried_in_the_place_of_two_effects():
+    model = with_effect({}, (), gaits=UNLIKE[:2])
+    base = first(model, range(len(model.runs)))
+    search = Selection(model, base)
+    pair = (Choice("coulomb_friction"), Choice("quadratic_drag"))
+    search.best = search.fitted(pair, [{}], base)
+    alone = {(name,) for name in LOOKALIKES}
+    beside = {(name, "quadratic_drag") for name in LOOKALIKES}
+    assert {tuple(sorted(one.effects)) for one in search._lookalikes()} == alone | {
+        tuple(sorted(one)) for one in beside
+    }
+
+
+def test_a_search_with_less_noise_begins_with_the_answer():
+    values = {f"floor_tilt.{name}": value for name, value in HIDDEN["floor_tilt"].items()}
+    model = with_effect(values, ("floor_tilt",), gaits=UNLIKE)
+    search = Selection(model, first(model, range(len(model.runs))))
+    found = search.run()
+    again = search.again([ChannelNoise(0.5)] * len(model.channels), [found])
+    assert again.best.choices == found.choices
+    assert set(again.tried) == {(), found.choices}
+    assert again.best.fit.problem.model.runs[0].sigma == pytest.approx(model.runs[0].sigma / 2)
+    for name in values:
+        assert again.best.fit.values[name] == pytest.approx(found.fit.values[name], rel=0.01)
 
 
 def test_slip_is_found_beside_an_effect_that_alone_explains_little():

@@ -130,9 +130,9 @@ def fitted(
 ) -> Candidate:
     """Fit a set of effects, starting from a fit without them.
 
-    guesses  initial values of the new quantities. The parameters start from the parent's fit or,
-             as a missing effect may have biased that, from their nominal values, whichever is
-             better after one step. The best start is continued
+    guesses  initial values of the new quantities. The parameters start from the parent's fit;
+             with the best guess also, as a missing effect may have biased that, from their nominal
+             values. The start that is best after one step is continued
     rival    the fit to beat: one that will not beat it is stopped early
     """
     ordered = tuple(sorted(choices))
@@ -152,10 +152,14 @@ def fitted(
         steps = SETTINGS.trial_steps
         return estimation.solve(some, fit.values, fit.states, steps, tolerance, known=fit.linear)
 
-    trials = []
-    for guess in _unlike(guesses):
-        starts = _unlike({**plain, **own, **guess} for own in (kept, unbent))
-        trials.append(min(map(begun, starts), key=lambda trial: trial[0].deviance))
+    distinct = _unlike(guesses)
+    trials = [begun({**plain, **kept, **guess}) for guess in distinct]
+    likeliest = min(range(len(trials)), key=lambda k: trials[k][0].deviance)
+    if kept != unbent:
+        trials[likeliest] = min(
+            (trials[likeliest], begun({**plain, **unbent, **distinct[likeliest]})),
+            key=lambda trial: trial[0].deviance,
+        )
     trials.sort(key=lambda trial: trial[0].deviance)
     before = trials[0][0].deviance
     trials = [(stepped(fit), states) for fit, states in trials[: SETTINGS.trial_starts]]
@@ -204,13 +208,6 @@ def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
 def settled(fit: Fit) -> Fit:
     """A fit of the search, iterated to full convergence."""
     return estimation.solve(fit.problem, fit.values, fit.states, known=fit.linear)
-
-
-def polished(candidate: Candidate) -> Candidate:
-    """The candidate refitted with the least process noise, starting from its whole-run fit."""
-    fit, whole = candidate.fit, candidate.simulated
-    problem = replace(fit.problem, q=SETTINGS.least_process_noise)
-    return Candidate(candidate.choices, estimation.fitted(problem, whole.values, fit.states))
 
 
 def _tested(problem: FitProblem, parent: Fit) -> FitProblem:

@@ -135,7 +135,7 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
         selection.run()
         if quieter := _quieter(selection):
             watch.progress("the noise is lower than estimated: repeating")
-            selection = selection.again(quieter)
+            selection = selection.again(quieter, selection.alike())
             selection.run()
     result = chosen(selection, watch)
     base, best = selection.base.fit, result.best

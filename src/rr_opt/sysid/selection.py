@@ -15,15 +15,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from rr_opt.formatting import words_of
-from rr_opt.sysid.candidates import (
-    Candidate,
-    continued,
-    first,
-    fitted,
-    polished,
-    quantities_of,
-    weights,
-)
+from rr_opt.sysid.candidates import Candidate, continued, first, fitted, quantities_of, weights
 from rr_opt.sysid.estimation import predicted, solve
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
@@ -65,10 +57,18 @@ class Selection:
         selection.drive()
         return selection
 
-    def again(self, noise: Sequence[ChannelNoise]) -> Selection:
-        """Start over with other noise."""
+    def again(self, noise: Sequence[ChannelNoise], answers: Sequence[Candidate] = ()) -> Selection:
+        """Start over with other noise, from the best of some answers."""
         model = self.model.with_noise(noise)
-        return self.begun(model, first(model, self.base.fit.problem.by_run), self.progress)
+        base = first(model, self.base.fit.problem.by_run)
+        selection = self.begun(model, base, self.progress)
+        values = [{q: one.fit.values[q] for q in one.fit.problem.names} for one in answers]
+        every = [
+            selection.fitted(one.choices, [own], base)
+            for one, own in zip(answers, values, strict=True)
+        ]
+        selection.best = _best(every) or selection.best
+        return selection
 
     def run(self) -> Candidate:
         """Run the search; returns the chosen candidate."""
@@ -84,7 +84,6 @@ class Selection:
                 self._contest()
         self._refine()
         self._substitute()
-        self._polish()
         self._backward(self.needed)
         self.best = self._simplest()
         self._contest()
@@ -185,7 +184,7 @@ class Selection:
     def _forward(self) -> None:
         """A forward step; the search is widened until one candidate clearly wins: two effects are
         tried at once only where no single one does, and proposals beside the best single one only
-        where those are no step forward either."""
+        where those are no step from the nominal model either."""
         self.progress("testing candidate effects")
         promising = self._promising()
         found = [*self._scored(promising, 1)]
@@ -199,7 +198,8 @@ class Selection:
             found += self._proposed(self.best)
         if not (alone and self.complete(alone)) and not self._settled(found):
             found += self._scored(promising, 2)
-        if alone and alone.predicts_better(self.best) and not self._advance(_best(found)):
+        stuck = not (self.best.choices or self._advance(_best(found)))
+        if stuck and alone and alone.predicts_better(self.best):
             found += self._proposed(alone)
         best = _best(found)
         if best and self._advance(best):
@@ -290,18 +290,6 @@ class Selection:
             others = [self.fitted((*rest, *some), [values]) for some, values in self._upstream]
             self.best = _best((self.best, *others)) or self.best
 
-    def _polish(self) -> None:
-        """Refit complete sets that are no larger than the best, starting from their whole-run fits:
-        a fit in segments may have stalled at a kink of a non-smooth effect."""
-        for key, one in [*self.tried.items()]:
-            worse = one.elpd < self.best.elpd and not one.given_up
-            if worse and len(key) <= len(self.best.choices) and self.complete(one):
-                again = polished(one)
-                if again.elpd > one.elpd:
-                    self.tried[key] = again
-                if again.elpd > self.best.elpd:
-                    self.best = again
-
     def _contest(self) -> None:
         """Try the lookalikes of the answer's effects in their place: an effect imitates the one
         that predicts better, which need not have the same companions."""
@@ -309,17 +297,25 @@ class Selection:
             return
         best, every = self.best, [*self._lookalikes()]
         self._contested = best
-        better = [one for one in every if not one.given_up and one.elpd > best.elpd]
+        better = [one for one in every if self._beats(one, best)]
         self.lookalikes = [one for one in every if one not in better]
         if better:
             self.tried |= {one.choices: one for one in better}
             self.best = max(better, key=lambda one: one.elpd)
             self._backward(self.needed)
 
+    @staticmethod
+    def _beats(one: Candidate, best: Candidate) -> bool:
+        """Whether a lookalike predicts better, or about as well with fewer effects."""
+        fewer = len(one.choices) < len(best.choices) and not best.predicts_better(one)
+        return not one.given_up and (fewer or one.elpd > best.elpd)
+
     def _lookalikes(self) -> Iterator[Candidate]:
+        """Each in the place of its effect, and of that and one more."""
         catalogue, best = self.model.catalogue, self.best
         for choice in best.choices:
-            rest = [one for one in best.choices if one is not choice]
+            others = [one for one in best.choices if one is not choice]
+            sets = [others, *([x for x in others if x is not one] for one in others)]
             for name in catalogue[choice.name].lookalikes:
                 self.progress(f"comparing {words_of(choice.name)} with {words_of(name)}")
                 # The values that it shares with the effect.
@@ -332,8 +328,9 @@ class Selection:
                     own = {q.name for q in info.quantities}
                     kept = {quantity: same[quantity] for quantity in own & same.keys()}
                     guesses = [{**guess, **kept} for guess in info.guesses]
-                    choices = (*rest, Choice(name, form))
-                    yield fitted(self.model, choices, best.fit, guesses, best.fit)
+                    for rest in sets:
+                        choices = (*rest, Choice(name, form))
+                        yield fitted(self.model, choices, best.fit, guesses, best.fit)
 
     @property
     def weighted(self) -> list[tuple[Candidate, float]]:

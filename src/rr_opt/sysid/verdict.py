@@ -285,18 +285,14 @@ def tried(selection: Selection, accepted: Candidate | None) -> tuple[Tried, ...]
     return tuple(
         Tried(
             one.effects,
-            one.excess if "simulated" in one.__dict__ else _roughly(one),
+            # Of one that was not simulated over whole runs, that in segments, with process noise.
+            one.excess if "simulated" in one.__dict__ else one.fit.excess,
             -2 * one.elpd,
             {k: v for k, v in one.fit.values.items() if "." in k},
             accepted is not None and one.choices == accepted.choices,
         )
         for one in every
     )
-
-
-def _roughly(one: Candidate) -> float:
-    """Misfit in segments, with process noise, of a candidate not simulated over whole runs."""
-    return one.fit.excess
 
 
 def alike(result: Identification, verdict: Verdict) -> tuple[tuple[str, ...], ...]:
