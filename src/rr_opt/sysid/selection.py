@@ -62,12 +62,10 @@ class Selection:
         model = self.model.with_noise(noise)
         base = first(model, self.base.fit.problem.by_run)
         selection = self.begun(model, base, self.progress)
-        values = [{q: one.fit.values[q] for q in one.fit.problem.names} for one in answers]
-        every = [
-            selection.fitted(one.choices, [own], base)
-            for one, own in zip(answers, values, strict=True)
-        ]
-        selection.best = _best(every) or selection.best
+        for one in answers:
+            values = {q: one.fit.values[q] for q in one.fit.problem.names}
+            selection.fitted(one.choices, [values], base)
+        selection.best = _best(selection.tried[one.choices] for one in answers) or selection.best
         return selection
 
     def run(self) -> Candidate:
@@ -325,9 +323,7 @@ class Selection:
                     if quantity.startswith(f"{choice.name}.")
                 }
                 for form, info in enumerate(catalogue[name].forms):
-                    own = {q.name for q in info.quantities}
-                    kept = {quantity: same[quantity] for quantity in own & same.keys()}
-                    guesses = [{**guess, **kept} for guess in info.guesses]
+                    guesses = [{**guess, **same} for guess in info.guesses]
                     for rest in sets:
                         choices = (*rest, Choice(name, form))
                         yield fitted(self.model, choices, best.fit, guesses, best.fit)
