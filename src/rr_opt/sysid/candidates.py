@@ -152,18 +152,17 @@ def fitted(
         steps = SETTINGS.trial_steps
         return estimation.solve(some, fit.values, fit.states, steps, tolerance, known=fit.linear)
 
+    def deviance(trial: tuple[Fit, object]) -> float:
+        return trial[0].deviance
+
     distinct = _unlike(guesses)
     trials = [begun({**plain, **kept, **guess}) for guess in distinct]
-    likeliest = min(range(len(trials)), key=lambda k: trials[k][0].deviance)
-    if kept != unbent:
-        trials[likeliest] = min(
-            (trials[likeliest], begun({**plain, **unbent, **distinct[likeliest]})),
-            key=lambda trial: trial[0].deviance,
-        )
-    trials.sort(key=lambda trial: trial[0].deviance)
+    k = min(range(len(trials)), key=lambda k: deviance(trials[k]))
+    trials[k] = min(trials[k], begun({**plain, **unbent, **distinct[k]}), key=deviance)
+    trials.sort(key=deviance)
     before = trials[0][0].deviance
     trials = [(stepped(fit), states) for fit, states in trials[: SETTINGS.trial_starts]]
-    best, states = min(trials, key=lambda trial: trial[0].deviance)
+    best, states = min(trials, key=deviance)
     gain = (before - best.deviance) / SETTINGS.trial_steps
     begun_with = {**states, **best.states}
     lacking = best.deviance - rival.deviance_of(some.by_run) if rival else -math.inf

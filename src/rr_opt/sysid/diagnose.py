@@ -135,7 +135,8 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
         selection.run()
         if quieter := _quieter(selection):
             watch.progress("the noise is lower than estimated: repeating")
-            selection = selection.again(quieter, selection.alike())
+            before, selection = selection, selection.again(quieter)
+            selection.resume(before)
             selection.run()
     result = chosen(selection, watch)
     base, best = selection.base.fit, result.best

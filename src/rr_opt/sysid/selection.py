@@ -57,16 +57,28 @@ class Selection:
         selection.drive()
         return selection
 
-    def again(self, noise: Sequence[ChannelNoise], answers: Sequence[Candidate] = ()) -> Selection:
-        """Start over with other noise, from the best of some answers."""
+    def again(self, noise: Sequence[ChannelNoise]) -> Selection:
+        """Start over with other noise."""
         model = self.model.with_noise(noise)
-        base = first(model, self.base.fit.problem.by_run)
-        selection = self.begun(model, base, self.progress)
-        for one in answers:
+        return self.begun(model, first(model, self.base.fit.problem.by_run), self.progress)
+
+    def resume(self, before: Selection) -> None:
+        """Begin with the answer of a search with other noise, if it is complete with this one, and
+        with what predicted about as well."""
+        tried = dict(self.tried)
+
+        def again(one: Candidate) -> Candidate:
             values = {q: one.fit.values[q] for q in one.fit.problem.names}
-            selection.fitted(one.choices, [values], base)
-        selection.best = _best(selection.tried[one.choices] for one in answers) or selection.best
-        return selection
+            return self.fitted(one.choices, [values], self.base)
+
+        answer = again(before.best)
+        if not (answer.choices and self.complete(answer)):
+            # It would end the fits of others early.
+            self.tried = tried
+            return
+        self.best = answer
+        for one in before.alike():
+            again(one)
 
     def run(self) -> Candidate:
         """Run the search; returns the chosen candidate."""
