@@ -109,11 +109,12 @@ _Simulated = tuple[DrivePath, Path, Array, dict[str, float]]
 
 @dataclass(frozen=True)
 class _DrivenRun:
-    """A run's drive with some values, the lag of the recording's clock, and the steps."""
+    """A run's drive with some values, the lag of the recording's clock, and its steps."""
 
     given: Mapping[str, float]
     drive: Drive
-    clock: tuple[float, Grain]
+    late: float
+    grain: Grain
     effects: tuple[str, ...]
     path: DrivePath
 
@@ -184,13 +185,14 @@ class Simulator:
         if kept and kept.given is given and kept.effects == effects:
             return kept
         drive, late = self.drives.of(run, given, effects), lateness(given, effects)
-        clock = late, grain(given, effects)
-        if kept and kept.drive is drive and (kept.clock, kept.effects) == (clock, effects):
+        fine = grain(given, effects)
+        as_before = kept and (kept.late, kept.grain, kept.effects) == (late, fine, effects)
+        if kept and as_before and kept.drive is drive:
             path = kept.path
         else:
-            steps = steps_of(drive, self._data[run].t, late, **clock[1])
+            steps = steps_of(drive, self._data[run].t, late, **fine)
             path = drive_path(drive, steps, late)
-        self._driven[run] = _DrivenRun(given, drive, clock, effects, path)
+        self._driven[run] = _DrivenRun(given, drive, late, fine, effects, path)
         return self._driven[run]
 
     def drive_slopes(
