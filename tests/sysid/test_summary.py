@@ -68,9 +68,12 @@ def test_what_looks_alike_is_not_ruled_out(found):
 
 def test_what_is_suspected_is_said(found):
     suspect = replace(found.findings[0], name="dragged_cable", confidence=0.87)
-    text = summary_of(replace(found, verdict="unexplained", findings=(), suspects=(suspect,)))
+    doubtful = replace(found, verdict="unexplained", findings=(), suspects=(suspect,))
+    text = summary_of(doubtful)
     assert "Suspected, but untested in trials: dragged cable (confidence 87 %). " in text
     assert "Suspected" not in summary_of(found)
+    tied = replace(doubtful, indistinguishable=(("dragged_cable", "coulomb_friction"),))
+    assert "These recordings cannot distinguish this from Coulomb friction." in summary_of(tied)
 
 
 @pytest.mark.parametrize(("off", "said"), [(0.05, "50.0 mm"), (0.0, "less than 0.1 mm")])

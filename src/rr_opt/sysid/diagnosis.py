@@ -249,12 +249,12 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
         depends = f": {remainder.depends_on}" if remainder.depends_on else ""
         share = f"{100 * remainder.share:.0f} % of the misfit"
         remains = f"The remainder is {remainder.size} ({share}){depends}."
-    own = {one.name for one in found.findings}
+    own = {one.name for one in (*found.findings, *found.suspects)}
     others = dict.fromkeys(n for some in found.indistinguishable for n in some if n not in own)
     rivals = listed(map(words_of, others), "or")
     tie = (
         f"These recordings cannot distinguish this from {rivals}."
-        if rivals and found.verdict in ("missing_physics", "parameters")
+        if rivals and (found.verdict in ("missing_physics", "parameters") or found.suspects)
         else ""
     )
     alike = dict.fromkeys(other for one in found.findings for other in one.lookalikes)

@@ -302,7 +302,7 @@ def alike(result: Identification, verdict: Verdict) -> tuple[tuple[str, ...], ..
         fit = result.best.fit
         both = ((q.name, *instead_of(fit, q.name)) for q in wrong(fit))
         return tuple(one for one in both if len(one) > 1)
-    if verdict != "missing_physics":
+    if verdict != "missing_physics" and not result.suspected:
         return ()
     own, catalogue = result.best, result.selection.model.catalogue
     near = []
