@@ -28,7 +28,7 @@ OTHER_MACHINES = ("growth", "input_share", "input_noise", "modes", "windows")
 
 COMPUTED = (
     (estimation, ("whole_runs",)),
-    (selection, ("first", "fitted", "polished", "predicted", "scores")),
+    (selection, ("first", "fitted", "predicted", "scores")),
     (diagnose, ("dependences", "evaluation", "first", "noise_in", "refitted", "settled")),
     (RollerRacer, ("proposals", "unknown_inputs", "upstream", "with_noise")),
 )
