@@ -142,11 +142,6 @@ class Effect:
     lookalikes: tuple[str, ...] = ()
     unmodelled: tuple[str, ...] = ()
 
-    @property
-    def sharpening(self) -> list[Parameter]:
-        """The parameters that are sharp."""
-        return [q for q in self.parameters if q.sharp]
-
     def actuated(
         self,
         commands: Sequence[Drive],

@@ -73,7 +73,7 @@ class Selection:
 
         answer = again(before.best)
         if not (answer.choices and self.complete(answer)):
-            # It would end the fits of others early.
+            # Kept among those tried, it would have the fits of others given up.
             self.tried = tried
             return
         self.best = answer
@@ -302,7 +302,7 @@ class Selection:
 
     def _contest(self) -> None:
         """Try the lookalikes of the answer's effects in their place: an effect imitates the one
-        that predicts better, which need not have the same companions."""
+        that predicts better, or as well with fewer companions."""
         if self.best is self._contested:
             return
         best, every = self.best, [*self._lookalikes()]
@@ -328,7 +328,7 @@ class Selection:
             sets = [others, *([x for x in others if x is not one] for one in others)]
             for name in catalogue[choice.name].lookalikes:
                 self.progress(f"comparing {words_of(choice.name)} with {words_of(name)}")
-                # The values that it shares with the effect.
+                # The effect's values under its name: a fit takes those that it has.
                 same = {
                     quantity.replace(choice.name, name): value
                     for quantity, value in best.fit.values.items()

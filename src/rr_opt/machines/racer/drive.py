@@ -235,7 +235,8 @@ def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
     """Whether some states are stiff, and the longest step, s."""
     every = [CATALOGUE[name] for name in effects]
     stiff = any(one.stiff for one in every)
-    if any(given[f"{one.name}.{q.name}"] != q.neutral for one in every for q in one.sharpening):
+    sharpest = ((one, q) for one in every for q in one.parameters if q.sharp)
+    if any(given[f"{one.name}.{q.name}"] != q.neutral for one, q in sharpest):
         return {"stiff": stiff, "longest": _SHARPEST}
     sharp = stiff or any(one.near_discontinuous for one in every)
     return {"stiff": stiff, "longest": _SHARP if sharp else _LONGEST}
