@@ -430,8 +430,8 @@ class Fit:
         sigma = np.abs(self.problem.form * (self.u + self.problem.centre / self.problem.scale))
         return {run: e.spread(sigma) for run, e in self.evidences.items()}
 
-    def _least(self, evidences: Mapping[int, Evidence]) -> float:
-        """Deviance of runs at their own optimum."""
+    def least(self, evidences: Mapping[int, Evidence]) -> float:
+        """Deviance of runs at their own optimum, by the linearisation."""
         problem = self.problem
         H, g, value = summed(problem, evidences, self.u)
         if not self.u.size:
@@ -447,8 +447,8 @@ class Fit:
     @cached_property
     def predictive(self) -> Mapping[int, float]:
         """Log predictive density of each run given the others."""
-        every = self._least(self.marginal)
-        return {run: (self._least(_but(self.marginal, run)) - every) / 2 for run in self.marginal}
+        every = self.least(self.marginal)
+        return {run: (self.least(_but(self.marginal, run)) - every) / 2 for run in self.marginal}
 
     @property
     def samples(self) -> float:
@@ -509,7 +509,7 @@ def solve(
     trust, converged = _Trust(), False
     linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
-    for step in range(steps):
+    for _ in range(steps):
         least = max(tolerance, relative * (here.cost - sum(problem.degrees.values())))
         better, expected = _stepped(linear, evidences, here, trust, least)
         if better is None:
@@ -525,7 +525,7 @@ def solve(
             converged = True
             break
         lacking = _deviance(problem, evidences, here.u) - enough
-        if step + 1 >= SETTINGS.first_steps and lacking > SETTINGS.patience * max(gain, expected):
+        if lacking > SETTINGS.patience * max(gain, expected):
             break
     return Fit(problem, problem.valued(here.u), here.states, linear, evidences, converged)
 
@@ -696,7 +696,8 @@ def fitted(
 ) -> Fit:
     """The problem's solution with the most likely process noise.
 
-    Starting from the initial strength; then with less, as long as the likelihood rises.
+    Starting from the initial strength; then with less, as long as the likelihood is expected to
+    rise, and does.
 
     enough  deviance to reach; a fit that will not get there is stopped early
     """
@@ -712,6 +713,8 @@ def fitted(
         if not fit.converged and fit.deviance > enough:
             return fit
     for q in reversed([q for q in grid() if q < fit.problem.q]):
+        if fit.least(fit.linear.evidences(q)) >= fit.deviance:
+            break
         lower = replace(problem, q=q)
         lower = solve(lower, fit.values, fit.states, steps, tolerance, fit.deviance, fit.linear)
         if lower.deviance >= fit.deviance:
