@@ -75,7 +75,7 @@ class _Play:
 
     def at(self, k: NDArray[np.intp], fraction: Array) -> Array:
         """Lead and its rate (2, n) after a fraction of step k."""
-        a, u, bend, twist = self._cubics[:, k]
+        a, u, bend, twist = self._cubics.take(k, axis=1)
         lead = a + fraction * (u + fraction * (bend + fraction * twist))
         rate = (u + fraction * (2 * bend + fraction * 3 * twist)) / self.dt
         landed = np.flatnonzero(fraction >= self.hit[k])
@@ -121,8 +121,11 @@ def _driven(command: Drive, play: _Play, half: float) -> Drive:
     def at(t: Array) -> Array:
         t = np.asarray(t, float)
         here = t / dt
-        folded = last + (here - last) % _STEPS
-        here = np.clip(np.where(here > last, folded, here), 0.0, None) if command.rest else folded
+        # The last period repeats. (A remainder would take twice as long.)
+        periods = np.floor((here - last) / _STEPS)
+        if command.rest:
+            here, periods = np.maximum(here, 0.0), np.maximum(periods, 0.0)
+        here = here - _STEPS * periods
         k = np.minimum(here.astype(int), play.hit.size - 1)
         lead, rate = play.at(k, here - k)
         if command.rest:

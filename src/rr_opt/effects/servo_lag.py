@@ -33,6 +33,7 @@ def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = 
     grid = command.period * np.arange(_SAMPLES) / _SAMPLES
     terms = np.fft.rfft(command.at(grid)[0]) / _SAMPLES
     terms[1:] *= 2
+    mean, terms[0] = float(terms[0].real), 0.0
     kept = np.flatnonzero(np.abs(terms) > _NEGLIGIBLE * np.abs(terms).max())
     omega = 2 * np.pi * kept / command.period
     response = terms[kept] / (1 + 1j * omega * tau - omega**2 * beta)
@@ -40,7 +41,9 @@ def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = 
 
     def steady(t: Array) -> Array:
         phase = omega[:, None] * np.asarray(t)[None]
-        return derivatives.real @ np.cos(phase) - derivatives.imag @ np.sin(phase)
+        path = derivatives.real @ np.cos(phase) - derivatives.imag @ np.sin(phase)
+        path[0] += mean
+        return path
 
     if not command.rest:
         return replace(command, at=steady)

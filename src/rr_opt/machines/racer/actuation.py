@@ -142,6 +142,8 @@ def actuation_sets(
 
     alone: list[_Set] = []
     alone = best_first(tried(plain))
+    if none.score <= alone[0].score:
+        return [((), {})]
     # Where one effect explains the angle, only cheap alternatives are tried.
     quick = angle.explained(alone[0])
     cheap = [one for one in fuller if racer.catalogue[one.name].smooth]
