@@ -6,7 +6,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import first
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.intervals import released, wrong
-from rr_opt.sysid.model import ChannelNoise, Choice
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
 from tests.sysid.made_up import with_effect
 
@@ -82,24 +82,6 @@ def test_a_lookalike_is_tried_in_the_place_of_two_effects():
     assert {tuple(sorted(one.effects)) for one in search._lookalikes()} == alone | {
         tuple(sorted(one)) for one in beside
     }
-
-
-@pytest.mark.parametrize(("level", "resumed"), [(0.99, True), (0.1, False)])
-def test_a_search_with_less_noise_begins_with_the_answer_if_it_is_complete(level, resumed):
-    """With a tenth of the noise that there is, nothing is."""
-    values = {f"floor_tilt.{name}": value for name, value in HIDDEN["floor_tilt"].items()}
-    model = with_effect(values, ("floor_tilt",), gaits=UNLIKE)
-    search = Selection(model, first(model, range(len(model.runs))))
-    found = search.run()
-    again = search.again([ChannelNoise(level)] * len(model.channels))
-    again.resume(search)
-    assert again.best.choices == (found.choices if resumed else ())
-    assert set(again.tried) == {(), again.best.choices}
-    assert again.best.fit.problem.model.runs[0].sigma == pytest.approx(
-        level * model.runs[0].sigma, nan_ok=True
-    )
-    for name in values if resumed else ():
-        assert again.best.fit.values[name] == pytest.approx(found.fit.values[name], rel=0.01)
 
 
 def test_slip_is_found_beside_an_effect_that_alone_explains_little():

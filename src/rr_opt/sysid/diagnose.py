@@ -19,7 +19,6 @@ from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.noise import noise_in
 from rr_opt.sysid.remainder import dependences, residues, stages, where
 from rr_opt.sysid.selection import Selection, turned
-from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.verdict import (
     Identification,
     alike,
@@ -135,10 +134,9 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
         selection.run()
         if quieter := _quieter(selection):
             watch.progress("the noise is lower than estimated: repeating")
-            before, selection = selection, selection.again(quieter)
-            selection.resume(before)
+            selection = selection.again(quieter)
             selection.run()
-    result = chosen(selection, watch)
+    result = weighed(selection, watch)
     base, best = selection.base.fit, result.best
     with watch("locating the fault"):
         before = dependences(base, *selection.model.unknown_inputs(base))
@@ -148,23 +146,10 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
     return replace(result, before=before, after=after)
 
 
-def chosen(selection: Selection, watch: Stopwatch) -> Identification:
-    """The answer of a search. If recordings disagree on its values: of the forms that predict about
-    as well, the one on whose values they agree best."""
-    result = weighed(selection, selection.best, watch)
-    if result.constancy.probability > SETTINGS.named:
-        return result
-    best = selection.best
-    forms = (one for one in selection.alike() if one.effects == best.effects)
-    others = [one for one in forms if one is not best]
-    every = (result, *(weighed(selection, one, watch) for one in others))
-    return max(every, key=lambda one: one.constancy.odds)
-
-
-def weighed(selection: Selection, best: Candidate, watch: Stopwatch) -> Identification:
-    """A candidate as the answer of a search, with the evidence for and against it."""
+def weighed(selection: Selection, watch: Stopwatch) -> Identification:
+    """The answer of a search, with the evidence for and against it."""
     model, runs = selection.model, list(selection.base.fit.problem.by_run)
-    best = turned(model, best)
+    best = turned(model, selection.best)
     with watch("looking for wrong values"):
         fit = settled(best.fit)
         if selection.insignificant(best):

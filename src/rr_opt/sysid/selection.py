@@ -62,24 +62,6 @@ class Selection:
         model = self.model.with_noise(noise)
         return self.begun(model, first(model, self.base.fit.problem.by_run), self.progress)
 
-    def resume(self, before: Selection) -> None:
-        """Begin with the answer of a search with other noise, if it is complete with this one, and
-        with what predicted about as well."""
-        tried = dict(self.tried)
-
-        def again(one: Candidate) -> Candidate:
-            values = {q: one.fit.values[q] for q in one.fit.problem.names}
-            return self.fitted(one.choices, [values], self.base)
-
-        answer = again(before.best)
-        if not (answer.choices and self.complete(answer)):
-            # Kept among those tried, it would have the fits of others given up.
-            self.tried = tried
-            return
-        self.best = answer
-        for one in before.alike():
-            again(one)
-
     def run(self) -> Candidate:
         """Run the search; returns the chosen candidate."""
         # The drive's own recording may show effects that the motion does not need.
