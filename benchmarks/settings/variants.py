@@ -29,7 +29,7 @@ OTHER_MACHINES = ("growth", "input_share", "input_noise", "modes", "windows")
 COMPUTED = (
     (estimation, ("whole_runs",)),
     (selection, ("first", "fitted", "predicted", "scores")),
-    (diagnose, ("dependences", "evaluation", "first", "noise_in", "refitted", "settled")),
+    (diagnose, ("dependences", "evaluation", "first", "noise_in", "refitted")),
     (RollerRacer, ("proposals", "unknown_inputs", "upstream", "with_noise")),
 )
 """Where the time goes."""

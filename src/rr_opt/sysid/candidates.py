@@ -155,7 +155,7 @@ def fitted(
     def deviance(trial: tuple[Fit, object]) -> float:
         return trial[0].deviance
 
-    distinct = _unlike(guesses)
+    distinct = [one for k, one in enumerate(guesses) if one not in guesses[:k]]
     trials = [begun({**plain, **kept, **guess}) for guess in distinct]
     k = min(range(len(trials)), key=lambda k: deviance(trials[k]))
     trials[k] = min(trials[k], begun({**plain, **unbent, **distinct[k]}), key=deviance)
@@ -204,11 +204,6 @@ def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
     return Candidate(candidate.choices, estimation.fitted(problem, fit.values, begun))
 
 
-def settled(fit: Fit) -> Fit:
-    """A fit of the search, iterated to full convergence."""
-    return estimation.solve(fit.problem, fit.values, fit.states, known=fit.linear)
-
-
 def _tested(problem: FitProblem, parent: Fit) -> FitProblem:
     """The problem restricted to the few runs that the parent explains worst."""
     worst = sorted(problem.by_run, key=lambda run: -parent.evidences[run].excess)
@@ -223,15 +218,6 @@ def _converted(
         one: model.converted(Request(one, values, state), parent.effects, effects)
         for one, state in parent.states.items()
     }
-
-
-def _unlike(values: Iterable[Mapping[str, float]]) -> list[Mapping[str, float]]:
-    """The distinct ones, in order."""
-    out: list[Mapping[str, float]] = []
-    for one in values:
-        if one not in out:
-            out.append(one)
-    return out
 
 
 def weights(candidates: Sequence[Candidate], draws: int = 2000) -> Array:

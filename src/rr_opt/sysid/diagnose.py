@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, first, refitted, settled
+from rr_opt.sysid.candidates import Candidate, first, refitted
 from rr_opt.sysid.diagnosis import Diagnosis, summary_of
+from rr_opt.sysid.estimation import solve
 from rr_opt.sysid.evaluation import evaluation, mismatch
 from rr_opt.sysid.intervals import estimates, released, wrong
 from rr_opt.sysid.machine import MachineModel
@@ -151,7 +152,8 @@ def weighed(selection: Selection, watch: Stopwatch) -> Identification:
     model, runs = selection.model, list(selection.base.fit.problem.by_run)
     best = turned(model, selection.best)
     with watch("looking for wrong values"):
-        fit = settled(best.fit)
+        # Iterated to full convergence.
+        fit = solve(best.fit.problem, best.fit.values, best.fit.states, known=best.fit.linear)
         if selection.insignificant(best):
             fit = released(fit)
         best = Candidate(best.choices, fit)

@@ -37,7 +37,15 @@ from scipy.linalg import LinAlgError, cho_solve, cholesky, solve_triangular
 from scipy.optimize import lsq_linear
 
 from rr_opt.array import Array
-from rr_opt.sysid.model import Model, Quantity, Request, Segment, Simulation, segments
+from rr_opt.sysid.model import (
+    Linearisation,
+    Model,
+    Quantity,
+    Request,
+    Segment,
+    Simulation,
+    segments,
+)
 from rr_opt.sysid.settings import SETTINGS
 
 States = Mapping[Segment, Array]
@@ -272,12 +280,19 @@ class Linear:
         """Linearise at a point that was simulated."""
         requests = problem.requests(values, states)
         every = problem.model.linearise(requests, problem.effects, problem.names)
-        size = requests[0].state.size
-        scale = np.ones(size + len(problem.names) + 1)
-        scale[size:-1] = problem.scale
+        return cls.scaled(problem, dict(zip(problem.segments, every, strict=True)), states, made)
+
+    @classmethod
+    def scaled(
+        cls, problem: FitProblem, every: Mapping[Segment, Linearisation], states: States, made
+    ) -> Linear:
+        """Of segments linearised in the quantities, and perhaps in further columns after these."""
+        size, nq = next(iter(states.values())).size, len(problem.names)
+        scale = np.ones(len(next(iter(every.values())).gram))
+        scale[size : size + nq] = problem.scale
         parts = {
             one: (linear.gram * scale * scale[:, None], linear.end * scale[:-1])
-            for one, linear in zip(problem.segments, every, strict=True)
+            for one, linear in every.items()
         }
         return cls(problem, made, parts, states)
 
@@ -448,7 +463,11 @@ class Fit:
     def predictive(self) -> Mapping[int, float]:
         """Log predictive density of each run given the others."""
         every = self.least(self.marginal)
-        return {run: (self.least(_but(self.marginal, run)) - every) / 2 for run in self.marginal}
+        others = {
+            run: {other: e for other, e in self.marginal.items() if other != run}
+            for run in self.marginal
+        }
+        return {run: (self.least(rest) - every) / 2 for run, rest in others.items()}
 
     @property
     def samples(self) -> float:
@@ -460,10 +479,6 @@ class Fit:
         """Misfit beyond the noise, RMS in sigma."""
         beyond = sum(e.excess for e in self.evidences.values())
         return math.sqrt(max(beyond + len(self.problem.names), 0.0) / max(self.samples, 1))
-
-
-def _but(evidences: Mapping[int, Evidence], run: int) -> dict[int, Evidence]:
-    return {other: e for other, e in evidences.items() if other != run}
 
 
 def _deviance(problem: FitProblem, evidences: Mapping[int, Evidence], u: Array) -> float:
@@ -679,7 +694,6 @@ def grid() -> list[float]:
 
 def most_likely(fit: Fit) -> float:
     """The strength of process noise with the highest marginal likelihood, at the fit's values."""
-
     runs, strengths = fit.problem.by_run, grid()
     every = fit.linear.each([(run, q) for q in strengths for run in runs])
     losses = np.array([e.value + e.log for e in every]).reshape(len(strengths), len(runs))

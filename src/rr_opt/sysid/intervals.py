@@ -134,8 +134,7 @@ def instead_of(fit: Fit, name: str) -> tuple[str, ...]:
 
 
 def _sizes(fit: Fit) -> dict[str, float]:
-    names = [q.name for q in fit.problem.quantities]
-    return dict(zip(names, np.abs(surprises(fit)).tolist(), strict=True))
+    return dict(zip(fit.problem.names, np.abs(surprises(fit)).tolist(), strict=True))
 
 
 def _with(fit: Fit, quantity: Quantity) -> Fit:

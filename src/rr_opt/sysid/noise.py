@@ -82,9 +82,8 @@ def noise_of(
         at = np.digitize(np.fft.rfftfreq(r.size, step), edges) - 1
         for k in np.unique(at[(at >= 0) & (at < _BINS)]):
             # Mean power from the median of an exponential distribution, also of few values.
-            few = np.sort(power[at == k])
-            mean = float(np.median(few)) / _median(few.size)
-            density[k].append(mean)
+            few = power[at == k]
+            density[k].append(float(np.median(few)) / _median(few.size))
     seen = np.array([np.median(one) if one else np.nan for one in density])
     middle, width = np.sqrt(edges[1:] * edges[:-1]), np.diff(edges)
     known = np.isfinite(seen)

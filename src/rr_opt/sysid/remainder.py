@@ -52,14 +52,9 @@ class Dependence:
         return len(self.term.columns)
 
     @property
-    def surplus(self) -> float:
-        """Gain beyond the threshold that noise hardly ever reaches; 0 if below."""
-        return max(self.gain - float(chdtri(self.degrees, SETTINGS.certain)), 0.0)
-
-    @property
     def certain(self) -> bool:
         """Whether noise would hardly ever gain as much."""
-        return self.surplus > 0
+        return self.gain > float(chdtri(self.degrees, SETTINGS.certain))
 
     @property
     def p_value(self) -> float:
@@ -75,22 +70,10 @@ def dependences(
         return []
     problem = fit.problem
     nq = len(problem.names)
-    size = next(iter(fit.states.values())).size
-    columns = next(iter(parts.values())).end.shape[1] - size - nq
-    scale = np.ones(size + nq + columns + 1)
-    scale[size : size + nq] = problem.scale
-    wide = Linear(
-        problem,
-        fit.linear.made,
-        {
-            one: (part.gram * scale * scale[:, None], part.end * scale[:-1])
-            for one, part in parts.items()
-        },
-        fit.states,
-    )
-    evidences = wide.evidences(problem.q)
+    evidences = Linear.scaled(problem, parts, fit.states, fit.linear.made).evidences(problem.q)
     H = sum(e.H for e in evidences.values())
     g = sum(e.g for e in evidences.values())
+    columns = next(iter(evidences.values())).g.size - nq
     prior = np.append(problem.prior, np.full(columns, SETTINGS.effect_prior**-2))
     H = H + np.diag(prior)
     g = g + np.append(problem.prior * fit.u, np.zeros(columns))

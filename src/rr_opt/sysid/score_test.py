@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum, root
+from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum, root, summed
 from rr_opt.sysid.model import Choice, Request
 
 
@@ -61,9 +61,9 @@ def scores(fit: Fit, most: int = 2) -> list[Score]:
     requests = wide.requests(values, states)
     made = dict(zip(wide.segments, model.simulate(requests, effects), strict=True))
     evidences = Linear.of(wide, values, states, made).evidences(problem.q)
-    H = np.diag(wide.prior) + sum(e.H for e in evidences.values())
-    g = wide.prior * wide.scaled(values) + sum(e.g for e in evidences.values())
-    test = _Test(H, g, wide.scaled(values), wide.box, len(problem.quantities), wide.prior)
+    u = wide.scaled(values)
+    H, g, _ = summed(wide, evidences, u)
+    test = _Test(H, g, u, wide.box, len(problem.quantities), wide.prior)
     where = {q.name: k for k, q in enumerate(quantities)}
     base, out = test.gain([]), []
     for some in (1, 2)[:most]:

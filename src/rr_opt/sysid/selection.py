@@ -257,7 +257,7 @@ class Selection:
                 guesses = [guess for one, guess in proposed if one == fuller]
                 guesses = guesses or self.model.catalogue[choice.name].forms[form].guesses
                 known = {q: parent.fit.values[q] for q in own}
-                more = [{**known, **_more(guess, own)} for guess in guesses]
+                more = [{**guess, **known} for guess in guesses]
                 yield self.fitted((*rest, fuller), more, parent)
 
     def _proposed(self, parent: Candidate) -> Iterator[Candidate]:
@@ -407,10 +407,6 @@ def _best(candidates: Iterable[Candidate]) -> Candidate | None:
     """The one that predicts best, of those that were not given up."""
     ended = (one for one in candidates if not one.given_up)
     return max(ended, key=lambda one: one.elpd, default=None)
-
-
-def _more(guess: Mapping[str, float], own: set[str]) -> dict[str, float]:
-    return {name: value for name, value in guess.items() if name not in own}
 
 
 def turned(model: MachineModel, candidate: Candidate) -> Candidate:

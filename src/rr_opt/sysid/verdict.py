@@ -240,12 +240,11 @@ def findings(result: Identification, choices: Sequence[Choice]) -> tuple[Finding
     base = max(result.selection.base.excess, 1e-12) ** 2
     out = []
     for choice in choices:
-        rest = tuple(one for one in result.best.choices if one != choice)
-        without = result.selection.tried.get(rest, result.selection.base)
-        left = without.excess**2 if rest else base
-        removes = float(np.clip((left - result.best.excess**2) / base, 0.0, 1.0))
-        if not rest:
-            removes = 1.0 - result.share
+        rest, removes = tuple(c for c in result.best.choices if c != choice), 1.0 - result.share
+        if rest:
+            without = result.selection.tried.get(rest, result.selection.base)
+            change = without.excess**2 - result.best.excess**2
+            removes = float(np.clip(change / base, 0.0, 1.0))
         values = named(result.best.fit, choice.name)
         others = (*_undecided(result, choice), *catalogue[choice.name].unmodelled)
         out.append(Finding(choice.name, result.confidences[choice.name], values, removes, others))
@@ -272,8 +271,7 @@ def wrong_values(result: Identification) -> tuple[Finding, ...]:
 
 def remainder_of(result: Identification) -> Remainder:
     """The misfit that remains with the answer's effects."""
-    after = result.final.excess
-    share = result.share
+    after, share = result.final.excess, result.share
     large = "small" if share <= SETTINGS.small else "large"
     size = "none" if after <= SETTINGS.none else large
     return Remainder(size, after, share)
