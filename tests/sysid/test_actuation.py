@@ -2,6 +2,7 @@
 
 import pytest
 
+from rr_opt.machines.racer import actuation
 from rr_opt.machines.racer.actuation import actuation_sets
 from rr_opt.model.gait import SineGait
 from tests.sysid.made_up import with_effect
@@ -33,3 +34,17 @@ def test_rate_limit_that_one_recording_shows():
     (choices, values), *_ = actuation_sets(model, range(len(model.runs)))
     assert [one.name for one in choices] == ["clock_offset", "servo_rate_limit"]
     assert values == pytest.approx(LIMITED, rel=0.02)
+
+
+def test_no_pairs_are_tried_where_no_single_effect_explains_anything(monkeypatch):
+    sizes, fit = [], actuation._fitted
+
+    def fitted(angle, racer, choices, *rest):
+        sizes.append(len(choices))
+        return fit(angle, racer, choices, *rest)
+
+    monkeypatch.setattr(actuation._RecordedAngle, "explained", lambda *_: False)
+    monkeypatch.setattr(actuation, "_fitted", fitted)
+    model = with_effect({}, ())
+    assert actuation_sets(model, range(len(model.runs))) == [((), {})]
+    assert max(sizes) == 1

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.sysid import estimation
 from rr_opt.sysid.estimation import fitted, initial, root, solve
 from rr_opt.sysid.settings import SETTINGS
 from tests.sysid.linear_model import LinearModel, stacked
@@ -59,6 +60,23 @@ def test_the_likeliest_is_none_for_a_right_model_and_some_for_a_wrong_one(distur
     problem, states = initial(wrong, (), wrong.parameters, VALUES, [0, 1, 2])
     q = fitted(replace(problem, robust=False), VALUES, states).problem.q
     assert max(low, SETTINGS.least_process_noise) <= q <= high
+
+
+def test_the_linearisation_of_a_linear_model_tells_what_less_would_give(model):
+    problem, states = cut(model, 1.0)
+    fit = solve(problem, VALUES, states)
+    less = solve(replace(problem, q=0.3), fit.values, fit.states, known=fit.linear)
+    assert fit.least(fit.linear.evidences(0.3)) == pytest.approx(less.deviance, abs=1e-3)
+    assert fit.deviance != pytest.approx(less.deviance, abs=1.0)
+
+
+def test_less_is_not_tried_in_vain(model, monkeypatch):
+    tried = []
+    monkeypatch.setattr(
+        estimation, "solve", lambda one, *rest, **k: tried.append(one.q) or solve(one, *rest, **k)
+    )
+    problem, states = cut(model, SETTINGS.most_process_noise)
+    assert fitted(problem, VALUES, states).problem.q == min(tried)
 
 
 def test_machines_that_differ_anyway_have_that_much_noise_at_least():
