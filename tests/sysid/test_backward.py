@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+from rr_opt.sysid import selection
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
 
 
@@ -14,6 +16,7 @@ class Made:
     choices: Any
     excess: float
     given_up: bool = False
+    fit: Any = None
 
     @property
     def elpd(self) -> float:
@@ -62,6 +65,19 @@ def test_an_effect_is_dropped_before_another_is_simplified():
     selection = Dropping()
     selection._backward(lambda _, part: part.excess > 7.6)
     assert selection.best.choices == ("a",)
+
+
+def test_a_simpler_form_that_was_given_up_is_fitted_before_it_counts_as_worse(monkeypatch):
+    fuller, simpler = Choice("patch", 2), Choice("patch", 1)
+    given_up = Made((simpler,), 9.0, given_up=True)
+    whole, ended = Made((fuller,), 6.0), Made((simpler,), 6.1)
+    search: Any = Selection.__new__(Selection)
+    search.tried = {(simpler,): given_up}
+    search.model = SimpleNamespace()
+    monkeypatch.setattr(Selection, "_forms", lambda *_, fuller: iter([(1, set())]))
+    monkeypatch.setattr(selection, "fitted", lambda *_: ended)
+    assert [*search._simpler(whole)] == [ended]
+    assert search.tried == {(simpler,): ended}
 
 
 class Near(Selection):

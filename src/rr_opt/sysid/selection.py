@@ -115,10 +115,8 @@ class Selection:
         """Whether the nominal model predicts the held-out recordings."""
         fit, model = self.base.fit, self.model
         held = [k for k, run in enumerate(model.runs) if run.held_out]
-        if not held:
-            return True
         most = SETTINGS.none**2 + model.form_error**2
-        return predicted(fit, held, fit.values).excess ** 2 <= most
+        return not held or predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether it also removes a good share of the other's misfit, and that misfit exceeds the
@@ -131,8 +129,7 @@ class Selection:
 
     def _close(self, candidate: Candidate) -> bool:
         """Whether it has effects, and its misfit is within their form error."""
-        catalogue = self.model.catalogue
-        form_errors = [catalogue[name].form_error for name in candidate.effects]
+        form_errors = [self.model.catalogue[name].form_error for name in candidate.effects]
         return bool(form_errors) and candidate.excess <= max(form_errors) * self.base.excess
 
     def fitted(
@@ -266,8 +263,7 @@ class Selection:
         guesses: dict[Choice, list[Mapping[str, float]]] = {}
         for choice, guess in self.model.proposals(parent.fit, parent.effects):
             guesses.setdefault(choice, []).append(guess)
-        every = [((choice,), some) for choice, some in guesses.items()]
-        yield from self._added(every, parent)
+        yield from self._added((((one,), some) for one, some in guesses.items()), parent)
 
     def _refine(self) -> None:
         """Choose the forms that predict best, even if the misfit is already insignificant."""
@@ -389,7 +385,11 @@ class Selection:
         for choice in candidate.choices:
             rest = [c for c in candidate.choices if c is not choice]
             for form, _ in self._forms(choice, fuller=False):
-                yield self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
+                one = self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
+                if one.given_up:
+                    # It need not fit as well as the fuller form.
+                    self.tried[one.choices] = one = fitted(self.model, one.choices, one.fit, [{}])
+                yield one
 
     def _forms(self, choice: Choice, *, fuller: bool) -> Iterator[tuple[int, set[str]]]:
         """The next larger, or smaller, forms of an effect, and the present form's quantities."""
