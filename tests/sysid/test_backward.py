@@ -1,6 +1,7 @@
 """Backward steps: what two effects account for together is not lost by dropping one at a time."""
 
 from dataclasses import dataclass
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -148,5 +149,6 @@ def test_a_part_that_leaves_nothing_is_taken_to_its_end(monkeypatch):
         fitted=lambda *_: SimpleNamespace(given_up=True, fit=None, excess=0.1),
         complete=lambda one: one.excess < 0.2,
     )
+    selection._ended = partial(Selection._ended, selection)
     assert Selection._part(selection, MADE["a", "b"], ("a",)) is ended  # pyright: ignore
     assert selection.tried == {("a",): ended}

@@ -6,7 +6,7 @@ from rr_opt.sysid.estimation import initial, solve
 from tests.sysid.linear_model import TRUE, LinearModel
 
 FAR = {"a": 9.0, "b": 9.0}
-"""More steps away than a fit takes before it may be given up."""
+"""Several steps away."""
 
 
 def fit(enough):

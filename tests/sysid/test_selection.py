@@ -6,7 +6,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import first
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.intervals import released, wrong
-from rr_opt.sysid.model import Choice
+from rr_opt.sysid.model import ChannelNoise, Choice
 from rr_opt.sysid.selection import Selection
 from tests.sysid.made_up import with_effect
 
@@ -82,6 +82,14 @@ def test_a_lookalike_is_tried_in_the_place_of_two_effects():
     assert {tuple(sorted(one.effects)) for one in search._lookalikes()} == alone | {
         tuple(sorted(one)) for one in beside
     }
+
+
+def test_a_search_with_less_noise_begins_anew():
+    model = with_effect({}, ())
+    search = Selection(model, first(model, range(len(model.runs))))
+    again = search.again([ChannelNoise(0.5)] * len(model.channels))
+    assert again.base.fit.problem.model.runs[0].sigma == pytest.approx(model.runs[0].sigma / 2)
+    assert again.base.fit.excess > search.base.fit.excess + 1
 
 
 def test_slip_is_found_beside_an_effect_that_alone_explains_little():

@@ -121,7 +121,7 @@ def _driven(command: Drive, play: _Play, half: float) -> Drive:
     def at(t: Array) -> Array:
         t = np.asarray(t, float)
         here = t / dt
-        # The last period repeats. (A remainder would take twice as long.)
+        # The last period repeats: `floor`, as `%` takes ten times as long.
         periods = np.floor((here - last) / _STEPS)
         if command.rest:
             here, periods = np.maximum(here, 0.0), np.maximum(periods, 0.0)

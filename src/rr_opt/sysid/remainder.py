@@ -71,12 +71,10 @@ def dependences(
     problem = fit.problem
     nq = len(problem.names)
     evidences = Linear.scaled(problem, parts, fit.states, fit.linear.made).evidences(problem.q)
-    H = sum(e.H for e in evidences.values())
-    g = sum(e.g for e in evidences.values())
     columns = next(iter(evidences.values())).g.size - nq
     prior = np.append(problem.prior, np.full(columns, SETTINGS.effect_prior**-2))
-    H = H + np.diag(prior)
-    g = g + np.append(problem.prior * fit.u, np.zeros(columns))
+    H = np.diag(prior) + sum(e.H for e in evidences.values())
+    g = prior * np.append(fit.u, np.zeros(columns)) + sum(e.g for e in evidences.values())
     plain = np.arange(nq, dtype=np.intp)
     beyond = max(sum(e.value - e.samples for e in fit.evidences.values()), 1.0)
     low, high = (

@@ -372,8 +372,7 @@ class Selection:
             self._compared.add((whole, key))
         part = self.fitted(key, [{}], whole)
         if part.given_up and self.complete(part):
-            # It need not predict as well as the whole.
-            self.tried[key] = part = fitted(self.model, key, part.fit, [{}])
+            part = self._ended(key, part)
         if key and whole.predicts_better(part) and (whole, key) not in self._compared:
             self._compared.add((whole, key))
             again = fitted(self.model, key, whole.fit, [{}], part.fit)
@@ -386,10 +385,12 @@ class Selection:
             rest = [c for c in candidate.choices if c is not choice]
             for form, _ in self._forms(choice, fuller=False):
                 one = self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
-                if one.given_up:
-                    # It need not fit as well as the fuller form.
-                    self.tried[one.choices] = one = fitted(self.model, one.choices, one.fit, [{}])
-                yield one
+                yield self._ended(one.choices, one) if one.given_up else one
+
+    def _ended(self, key: tuple[Choice, ...], part: Candidate) -> Candidate:
+        """A part that was given up, fitted to the end: it need not fit as well as the whole."""
+        self.tried[key] = fitted(self.model, key, part.fit, [{}])
+        return self.tried[key]
 
     def _forms(self, choice: Choice, *, fuller: bool) -> Iterator[tuple[int, set[str]]]:
         """The next larger, or smaller, forms of an effect, and the present form's quantities."""
