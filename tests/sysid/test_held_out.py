@@ -87,8 +87,9 @@ def test_what_is_left_of_all_recordings(left, likely):
 
 def test_a_wrong_value_is_as_sure_as_recordings_agree_on_it(monkeypatch):
     monkeypatch.setattr(verdict, "wrong", lambda _: [SimpleNamespace(name="m1")])
-    monkeypatch.setattr(verdict, "estimates", lambda _: {"m1": None})
-    made: Any = SimpleNamespace(best=SimpleNamespace(fit=None), constancy=Constancy(10.0, 40))
+    made: Any = SimpleNamespace(
+        best=SimpleNamespace(fit=None), estimates={"m1": None}, constancy=Constancy(10.0, 40)
+    )
     (found,) = wrong_values(made)
     assert found.confidence == Constancy(10.0, 40).probability < 0.9
 

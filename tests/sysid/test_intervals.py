@@ -2,14 +2,18 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from rr_opt.sysid import intervals
+from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.estimation import fitted, initial
 from rr_opt.sysid.intervals import estimates, instead_of, released, wrong
 from rr_opt.sysid.settings import SETTINGS
+from rr_opt.sysid.verdict import Identification
 from tests.sysid.linear_model import LinearModel
 
 FIRST = {"a": 0.0, "b": 0.0}
@@ -46,6 +50,23 @@ def test_wider_by_what_models_of_an_effect_do_not_agree_on():
         math.hypot(half, 1.96 * share * fit.values["b"]), rel=1e-3
     )
     assert wider["a"] == plain["a"]
+
+
+def test_they_cover_what_recordings_that_were_not_fitted_call_for():
+    model, other = (LinearModel(0, 6, {"a": a, "b": 1.0}) for a in (0.3, 0.6))
+    model.runs = [*model.runs[:4], *other.runs[4:]]
+
+    def candidate(runs):
+        problem, states = initial(model, (), model.parameters, FIRST, runs)
+        return Candidate((), fitted(problem, FIRST, states))
+
+    best, everywhere = candidate(range(4)), candidate(range(6))
+    result: Any = SimpleNamespace(best=best, everywhere=everywhere)
+    found = Identification.estimates.func(result)["a"]
+    alone, all_of_them = estimates(best.fit)["a"], everywhere.simulated.values["a"]
+    assert found.value == alone.value
+    assert alone.low <= 0.3 <= alone.high < all_of_them < found.high
+    assert found.low == alone.low
 
 
 def test_where_nothing_was_fitted_there_is_no_interval():

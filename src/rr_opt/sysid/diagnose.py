@@ -76,11 +76,12 @@ def _answer(result: Identification) -> Diagnosis:
     if verdict == "missing_physics" and named:
         channel = model.catalogue[named[0].name].channel
     levels = (result.nominal, result.refitted, result.final)
-    fit, last = best.fit, result.final
+    fit, known, last = best.fit, result.estimates, result.final
     if verdict == "unexplained":
         # The best predictor, though what it still lacks cannot be named.
         last = min(levels, key=lambda one: one.rms)
-        fit = best.fit if last is result.final else base.fit
+        if last is not result.final:
+            fit, known = base.fit, estimates(base.fit)
     remainder = remainder_of(result)
     if remainder.size != "none" and result.after:
         remainder = replace(remainder, depends_on=where(result.after[0], model.inputs))
@@ -93,10 +94,7 @@ def _answer(result: Identification) -> Diagnosis:
         stages=located,
         findings=named,
         suspects=findings(result, result.suspected),
-        parameters={
-            q.name: one
-            for q, one in zip(fit.problem.quantities, estimates(fit).values(), strict=True)
-        },
+        parameters=known,
         tried=tried(selection, best if verdict != "unexplained" else None),
         indistinguishable=alike(result, verdict),
         next_experiment=None,

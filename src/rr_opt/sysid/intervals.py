@@ -37,7 +37,7 @@ def covariance(fit: Fit) -> Array:
 
 
 def estimates(fit: Fit) -> dict[str, Estimate]:
-    """Every fitted quantity with its 95 % interval."""
+    """Every fitted quantity with its 95 % interval by the fit alone."""
     spread = np.sqrt(np.maximum(np.diag(covariance(fit)), 0.0))
     out = {}
     for q, s in zip(fit.problem.quantities, spread, strict=True):
@@ -46,6 +46,15 @@ def estimates(fit: Fit) -> dict[str, Estimate]:
         half = half if math.isfinite(half) else math.inf
         out[q.name] = Estimate(value, max(value - half, q.low), min(value + half, q.high), q.unit)
     return out
+
+
+def joint(own: Mapping[str, Estimate], other: Mapping[str, Estimate]) -> dict[str, Estimate]:
+    """Estimates with intervals that also cover those of another fit of the same quantities. A loss
+    may have several minima: the curvature at one does not show another, but other data may."""
+    return {
+        name: replace(one, low=min(one.low, other[name].low), high=max(one.high, other[name].high))
+        for name, one in own.items()
+    }
 
 
 def surprises(fit: Fit) -> Array:
@@ -142,13 +151,3 @@ def _with(fit: Fit, quantity: Quantity) -> Fit:
     every = fit.problem.quantities
     quantities = tuple(quantity if q.name == quantity.name else q for q in every)
     return fitted(replace(fit.problem, quantities=quantities), fit.values, fit.states)
-
-
-def named(fit: Fit, prefix: str) -> Mapping[str, Estimate]:
-    """The estimates of an effect's quantities, by name without the effect's prefix."""
-    start = f"{prefix}."
-    return {
-        name.removeprefix(start): one
-        for name, one in estimates(fit).items()
-        if name.startswith(start)
-    }

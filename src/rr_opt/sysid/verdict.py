@@ -17,9 +17,9 @@ from rr_opt.formatting import words_of
 from rr_opt.messages import listed
 from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.constancy import Constancy, constancy, overdispersion
-from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
+from rr_opt.sysid.diagnosis import Estimate, Finding, Remainder, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
-from rr_opt.sysid.intervals import estimates, instead_of, named, wrong
+from rr_opt.sysid.intervals import estimates, instead_of, joint, wrong
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.remainder import Dependence, where
 from rr_opt.sysid.selection import Selection
@@ -172,6 +172,12 @@ class Identification:
         left = 0.0 if self.best.choices else self.everywhere.excess
         return constancy(self.everywhere.fit, left, self._explained, self._form_errors)
 
+    @cached_property
+    def estimates(self) -> Mapping[str, Estimate]:
+        """The answer's values, from the fitted recordings; the intervals also cover what whole-run
+        simulations of all recordings give."""
+        return joint(estimates(self.best.fit), estimates(self.everywhere.simulated))
+
     @property
     def shown(self) -> tuple[Choice, ...]:
         """The named effects that are more likely missing than not."""
@@ -245,7 +251,12 @@ def findings(result: Identification, choices: Sequence[Choice]) -> tuple[Finding
             without = result.selection.tried.get(rest, result.selection.base)
             change = without.excess**2 - result.best.excess**2
             removes = float(np.clip(change / base, 0.0, 1.0))
-        values = named(result.best.fit, choice.name)
+        start = f"{choice.name}."
+        values = {
+            name.removeprefix(start): one
+            for name, one in result.estimates.items()
+            if name.startswith(start)
+        }
         others = (*_undecided(result, choice), *catalogue[choice.name].unmodelled)
         out.append(Finding(choice.name, result.confidences[choice.name], values, removes, others))
     return tuple(sorted(out, key=lambda one: -one.removes))
@@ -263,7 +274,7 @@ def _undecided(result: Identification, choice: Choice) -> Iterator[str]:
 def wrong_values(result: Identification) -> tuple[Finding, ...]:
     """The parameters whose nominal values are wrong; the confidence is the probability that
     recordings agree on the values."""
-    intervals, likely = estimates(result.best.fit), result.constancy.probability
+    intervals, likely = result.estimates, result.constancy.probability
     return tuple(
         Finding(q.name, likely, {q.name: intervals[q.name]}, 1.0) for q in wrong(result.best.fit)
     )
