@@ -120,6 +120,17 @@ def test_what_machines_differ_by_calls_for_no_second_effect(form_error, kept):
     assert selection.forward == kept
 
 
+def test_an_effect_of_the_drive_in_another_form_is_substituted_not_added(monkeypatch):
+    alone, both = (Choice("play"),), (Choice("lag"), Choice("play"))
+    search: Any = Selection.__new__(Selection)
+    search.best = Made((Choice("floor"), Choice("play", 1)), 6.0)
+    search._upstream = [(alone, {}), (both, {})]
+    asked = []
+    monkeypatch.setattr(Selection, "fitted", lambda _, key, *__: asked.append(key) or search.best)
+    search._substitute()
+    assert asked == [(Choice("floor"), *alone), (Choice("floor"), *both)]
+
+
 def test_what_the_motion_does_not_show_goes_before_more_is_sought():
     class Looking(Dropping):
         def _enough(self, candidate) -> bool:

@@ -272,8 +272,8 @@ class Selection:
 
     def _substitute(self) -> None:
         """Try other explanations of the drive's own recording beside the rest of the answer."""
-        every = {choice for choices, _ in self._upstream for choice in choices}
-        rest = [choice for choice in self.best.choices if choice not in every]
+        every = {choice.name for choices, _ in self._upstream for choice in choices}
+        rest = [choice for choice in self.best.choices if choice.name not in every]
         if len(rest) < len(self.best.choices):
             others = [self.fitted((*rest, *some), [values]) for some, values in self._upstream]
             self.best = _best((self.best, *others)) or self.best
