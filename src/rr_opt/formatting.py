@@ -74,8 +74,10 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 
 
 def words_of(name: str) -> str:
-    """An effect's name as words: `coulomb_friction` as `Coulomb friction`."""
-    words = name.replace("com_", "centre-of-mass ").replace("left_right", "left-right")
+    """An effect's name as words, `coulomb_friction` as `Coulomb friction`, or that of a value of
+    it, `servo_lag.tau` as `tau of servo lag`."""
+    words = " of ".join(reversed(name.split(".")))
+    words = words.replace("com_", "centre-of-mass ").replace("left_right", "left-right")
     return words.replace("_", " ").replace("coulomb", "Coulomb").replace("stribeck", "Stribeck")
 
 

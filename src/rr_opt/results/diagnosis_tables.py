@@ -51,8 +51,8 @@ def effect_words(name: str) -> str:
 
 
 def parameter_words(name: str) -> str:
-    """`kappa1` as `viscous wheel friction of platform 1`; other names unchanged."""
-    return PARAMETERS[name].full_words if name in PARAMETERS else name.replace("_", " ")
+    """`kappa1` as `viscous wheel friction of platform 1`; others by their names."""
+    return PARAMETERS[name].full_words if name in PARAMETERS else words_of(name)
 
 
 def candidate_words(effects: Sequence[str]) -> str:

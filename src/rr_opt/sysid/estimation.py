@@ -181,11 +181,11 @@ class FitProblem:
 
     @cached_property
     def form(self) -> Array:
-        """Relative deviation of each effect's quantities between recordings, one sigma: its form
-        error."""
+        """Relative deviation of each added effect's quantities between recordings, one sigma: its
+        form error."""
         catalogue = self.model.catalogue
-        effects = [name.partition(".") for name in self.names]
-        return np.array([catalogue[one].form_error if dot else 0.0 for one, dot, _ in effects])
+        effects = [name.partition(".")[0] for name in self.names]
+        return np.array([catalogue[one].form_error if one in catalogue else 0.0 for one in effects])
 
     @cached_property
     def box(self) -> tuple[Array, Array]:

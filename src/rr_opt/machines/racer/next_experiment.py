@@ -70,11 +70,10 @@ def next_experiment(
         return None
     k, quantity, factor, apart = known
     gait = plans[k].gait
-    words = " of ".join(reversed(words_of(quantity).split(".")))
     sentence = (
         f"Record {plans[k].seconds:.0f} s at amplitude {gait.amplitude:.2f} rad, period "
         f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, start: {plans[k].start}. This would "
-        f"narrow the interval of {words} by a factor of {factor:.1f}."
+        f"narrow the interval of {words_of(quantity)} by a factor of {factor:.1f}."
     )
     return _answer(plans[k], (_names(best), quantity), apart, sentence)
 

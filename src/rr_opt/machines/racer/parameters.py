@@ -104,8 +104,8 @@ def _present(use: EffectUse, setting: OperatingRange) -> Iterator[Quantity]:
     """The values of an effect that the nominal robot has: its strength is not known."""
     for q in CATALOGUE[use.name].parameters:
         value = use.values.get(q.name, q.neutral)
-        if value != q.neutral and not q.guess_from_data:
-            size = max(abs(value), 0.1 * q.magnitude(setting))
+        if value != q.neutral:
+            size = SETTINGS.effect_prior * max(abs(value), 0.1 * q.magnitude(setting))
             yield Quantity(
                 f"{use.name}.{q.name}", q.unit, value, size, True, *q.bounds, value, free=True
             )

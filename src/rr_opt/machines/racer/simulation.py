@@ -290,9 +290,9 @@ class Simulator:
         self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
     ) -> Array:
         """The state with other effects: z or v, and side speeds that are 0 or left out."""
-        old, new = self.every(before), self.every(effects)
-        if slips(old) == slips(new):
-            return request.state
+        new, state = self.every(effects), request.state
+        if slips(new) == (state.size > V + 1):
+            return state
         given = self.given(request.values)
         drive = self.drives.of(request.segment.run, given, new)
         t = self._data[request.segment.run].t[request.segment.first] + lateness(given, new)
@@ -301,7 +301,6 @@ class Simulator:
         p = values_of(given, floor_motion().parameters)[:count]
         # v = z + g dphi
         pushed = float(speeds(np.zeros(V + 1), [phi, dphi], p)[0])
-        state = request.state
         if slips(new):
             return np.array([*state[:V], state[V] + pushed, 0.0, 0.0])
         return np.array([*state[:V], state[V] - pushed])
