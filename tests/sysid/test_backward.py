@@ -1,7 +1,6 @@
 """Backward steps: what two effects account for together is not lost by dropping one at a time."""
 
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -149,17 +148,15 @@ def test_what_the_motion_does_not_show_goes_before_more_is_sought():
         Looking().run()
 
 
-def test_a_part_that_leaves_nothing_is_taken_to_its_end(monkeypatch):
+def test_a_part_that_is_enough_is_taken_to_its_end(monkeypatch):
     """It need not predict as well as the whole, by which it was given up."""
-    ended = Made(("a",), 0.1)
-    monkeypatch.setattr("rr_opt.sysid.selection.fitted", lambda *_: ended)
-    selection: Any = SimpleNamespace(
-        tried={},
-        _compared=set(),
-        model=None,
-        fitted=lambda *_: SimpleNamespace(given_up=True, fit=None, excess=0.1),
-        complete=lambda one: one.excess < 0.2,
-    )
-    selection._ended = partial(Selection._ended, selection)
-    assert Selection._part(selection, MADE["a", "b"], ("a",)) is ended  # pyright: ignore
-    assert selection.tried == {("a",): ended}
+
+    class GivingUp(Dropping):
+        def _fewer(self, candidate) -> Any:
+            return (replace(one, given_up=True) for one in super()._fewer(candidate))
+
+    selection = GivingUp()
+    selection.tried, selection.model = {}, None  # pyright: ignore
+    monkeypatch.setattr("rr_opt.sysid.selection.fitted", lambda _, key, *__: MADE[key])
+    selection._backward(lambda _, part: part.excess > 7.6)
+    assert selection.best == selection.tried[("a",)] == MADE[("a",)]  # pyright: ignore

@@ -38,7 +38,7 @@ def doubt(
             base=candidate(),
             insignificant=lambda _: none,
             foreseen=foreseen,
-            model=SimpleNamespace(inputs={"rolling": "a force along the wheels"}),
+            model=SimpleNamespace(inputs={"rolling": "a force along the wheels"}, form_error=0.0),
         ),
         _disagree=constant <= 0.5,
         _hints=lambda: Identification._hints(made),

@@ -23,14 +23,16 @@ def model():
     return LinearModel(disturbed=0.05)
 
 
-def cut(model, q, length=None):
-    problem, states = initial(model, (), model.parameters, VALUES, [0, 1, 2], length)
+def cut(model, q):
+    problem, states = initial(model, (), model.parameters, VALUES, [0, 1, 2])
     return replace(problem, q=q, robust=False), states
 
 
 def test_with_little_it_is_single_shooting():
     free = LinearModel(disturbed=0.05, prior=(np.inf, np.inf))
-    single = estimate(*cut(free, 1.0, 1e9))
+    whole = LinearModel(disturbed=0.05, prior=(np.inf, np.inf))
+    whole.segment_length = 1e9
+    single = estimate(*cut(whole, 1.0))
     assert estimate(*cut(free, 1e-3)) == pytest.approx(single, rel=1e-4)
     assert estimate(*cut(free, 10.0)) != pytest.approx(single, rel=1e-2)
 

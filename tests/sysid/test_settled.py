@@ -32,7 +32,7 @@ class Made:
 def effect(name: str, *, smooth: bool, guesses: tuple[Mapping[str, float], ...] = ({},)):
     size = Quantity(f"{name}.size", "m", 0.0, 0.3, False, 0.0, 9.0, 0.0)
     form = Form((size,), guesses)
-    return EffectInfo(name, "", "rolling", "", (form,), smooth)
+    return EffectInfo(name, "rolling", (form,), smooth)
 
 
 class Settling(Selection):

@@ -40,7 +40,8 @@ class Flat(LinearModel):
 
 def predictions(model, begun=()):
     """Of all recordings, with the true values: the states alone are fitted."""
-    problem, states = initial(model, (), model.parameters, TRUE, range(3), 9.0)
+    model.segment_length = 9.0
+    problem, states = initial(model, (), model.parameters, TRUE, range(3))
     alone = replace(problem, quantities=(), values=dict(TRUE))
     return solve(alone, TRUE, {**states, **dict(begun)})
 

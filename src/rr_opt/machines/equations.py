@@ -92,7 +92,7 @@ def effect_info(effect: MachineEffect, scales: Scales) -> EffectInfo:
 
     forms = effect.forms or (tuple(c.name for c in effect.constants),)
     return EffectInfo(
-        *(effect.name, effect.family, effect.channel, effect.sentence, tuple(map(form, forms))),
+        *(effect.name, effect.channel, tuple(map(form, forms))),
         smooth=effect.smooth,
         form_error=effect.form_error,
     )

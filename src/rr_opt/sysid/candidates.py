@@ -114,10 +114,10 @@ def quantities_of(model: Model, choices: Sequence[Choice]) -> tuple[Quantity, ..
     return (*model.parameters, *own)
 
 
-def first(model: Model, runs: Iterable[int], length: float | None = None) -> Candidate:
+def first(model: Model, runs: Iterable[int]) -> Candidate:
     """The nominal model, its parameters fitted."""
     values = {q.name: q.value for q in model.parameters}
-    problem, states = estimation.initial(model, (), model.parameters, values, runs, length)
+    problem, states = estimation.initial(model, (), model.parameters, values, runs)
     return Candidate((), estimation.fitted(problem, values, states))
 
 
@@ -140,7 +140,7 @@ def fitted(
     names, quantities = problem.effects, problem.quantities
     plain = {q.name: q.centre for q in quantities}
     kept = {k: v for k, v in parent.values.items() if k in plain}
-    unbent = {**kept, **{q.name: q.centre for q in model.parameters}}
+    unbent = {q.name: q.centre for q in model.parameters}
     some, tolerance = _tested(problem, parent), SETTINGS.search_tolerance
 
     def begun(values: Mapping[str, float]) -> tuple[Fit, dict[Segment, Array]]:
@@ -158,7 +158,7 @@ def fitted(
     distinct = [one for k, one in enumerate(guesses) if one not in guesses[:k]]
     trials = [begun({**plain, **kept, **guess}) for guess in distinct]
     k = min(range(len(trials)), key=lambda k: deviance(trials[k]))
-    trials[k] = min(trials[k], begun({**plain, **unbent, **distinct[k]}), key=deviance)
+    trials[k] = min(trials[k], begun({**plain, **kept, **distinct[k], **unbent}), key=deviance)
     trials.sort(key=deviance)
     before = trials[0][0].deviance
     trials = [(stepped(fit), states) for fit, states in trials[: SETTINGS.trial_starts]]
@@ -171,7 +171,7 @@ def fitted(
         return Candidate(ordered, estimation.solve(problem, best.values, begun_with, 0), True)
     enough = rival.deviance if rival else math.inf
     fit = estimation.fitted(problem, best.values, begun_with, enough=enough, tolerance=tolerance)
-    return Candidate(ordered, fit, not fit.converged and fit.deviance > enough)
+    return _judged(ordered, fit, enough)
 
 
 def continued(model: Model, choices: Sequence[Choice], nested: Fit) -> Candidate:
@@ -181,7 +181,13 @@ def continued(model: Model, choices: Sequence[Choice], nested: Fit) -> Candidate
     values = {q.name: nested.values.get(q.name, q.centre) for q in problem.quantities}
     states = _converted(model, nested, problem.effects, values)
     tolerance = SETTINGS.search_tolerance
-    return Candidate(ordered, estimation.fitted(problem, values, states, tolerance=tolerance))
+    return _judged(ordered, estimation.fitted(problem, values, states, tolerance=tolerance))
+
+
+def _judged(choices: tuple[Choice, ...], fit: Fit, enough: float = math.inf) -> Candidate:
+    """Given up if it was stopped behind what is enough, or cannot simulate a recording."""
+    stopped = not fit.converged and fit.deviance > enough
+    return Candidate(choices, fit, stopped or not math.isfinite(fit.deviance))
 
 
 def _problem(model: Model, choices: Sequence[Choice], parent: Fit) -> FitProblem:

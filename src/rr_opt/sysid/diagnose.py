@@ -112,9 +112,10 @@ def _answer(result: Identification) -> Diagnosis:
 
 
 def _quieter(selection: Selection) -> list[ChannelNoise] | None:
-    """The noise estimate, if the search shows less noise than was assumed."""
-    noise = noise_in(selection.best.simulated)
-    return noise if noise and any(one.quieter for one in noise) else None
+    """The noise, if the search shows less than was assumed; more may be what the answer lacks."""
+    noise = noise_in(selection.best.simulated) or []
+    lower = [replace(one, level=min(one.level, 1.0)) for one in noise]
+    return lower if any(one.quieter for one in lower) else None
 
 
 def identified(model: MachineModel, watch: Stopwatch) -> Identification:

@@ -11,19 +11,6 @@ from rr_opt.sysid.settings import SETTINGS
 
 Verdict = Literal["consistent", "parameters", "missing_physics", "unexplained"]
 
-CHANNELS = (
-    "actuation",
-    "constraint_axle1",
-    "constraint_axle2",
-    "rolling",
-    "yaw",
-    "mass",
-    "floor",
-    "measurement",
-    "none",
-)
-"""Where a fault can sit."""
-
 
 @dataclass(frozen=True)
 class Estimate:

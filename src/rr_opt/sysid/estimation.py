@@ -704,7 +704,6 @@ def fitted(
     problem: FitProblem,
     values: Mapping[str, float],
     states: States,
-    steps: int = SETTINGS.steps,
     enough: float = math.inf,
     tolerance: float = SETTINGS.tolerance,
 ) -> Fit:
@@ -716,7 +715,8 @@ def fitted(
     enough  deviance to reach; a fit that will not get there is stopped early
     """
     if all(len(parts) == 1 for parts in problem.by_run.values()):
-        return solve(problem, values, states, steps, tolerance)
+        return solve(problem, values, states, tolerance=tolerance)
+    steps = SETTINGS.steps
     fit = solve(problem, values, states, SETTINGS.first_steps, tolerance)
     for _ in range(3):
         q = most_likely(fit)
@@ -743,10 +743,9 @@ def initial(
     quantities: tuple[Quantity, ...],
     values: Mapping[str, float],
     runs: Iterable[int],
-    length: float | None = None,
 ) -> tuple[FitProblem, dict[Segment, Array]]:
     """The problem for some runs, and initial guesses of its states."""
-    cut = segments({r: model.runs[r] for r in runs}, length or model.segment_length)
+    cut = segments({r: model.runs[r] for r in runs}, model.segment_length)
     problem = FitProblem(model, effects, quantities, cut, values)
     return problem, {one: model.initial_state(one, effects, values) for one in cut}
 

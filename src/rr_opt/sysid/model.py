@@ -75,9 +75,7 @@ class EffectInfo:
     """
 
     name: str
-    family: str
     channel: str
-    sentence: str
     forms: tuple[Form, ...]
     smooth: bool = True
     upstream: bool = False

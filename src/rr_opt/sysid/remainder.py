@@ -99,7 +99,12 @@ def dependences(
         error = np.sqrt(np.maximum(spread, 0.0))
         curve = Curve(term.variable, term.unit, term.at, term.shapes @ d[nq:], error)
         out.append(Dependence(term, gain, float(np.clip(gain / beyond, 0, 1)), curve))
-    return sorted(out, key=lambda one: one.degrees - one.gain)
+    return sorted(out, key=_lead, reverse=True)
+
+
+def _lead(one: Dependence) -> float:
+    """Its gain beyond what its degrees of freedom gain by chance."""
+    return one.gain - one.degrees
 
 
 def stages(
@@ -112,11 +117,11 @@ def stages(
     faulty  whether anything is missing, so that the leading channel is at fault
     """
     best = {
-        channel: max((one for one in found if one.channel == channel), key=lambda one: one.gain)
+        channel: max((one for one in found if one.channel == channel), key=_lead)
         for channel in inputs
         if any(one.channel == channel for one in found)
     }
-    leading = max(best.values(), key=lambda one: one.gain, default=None)
+    leading = max(best.values(), key=_lead, default=None)
     return tuple(
         Stage(
             channel.replace("_", " "),

@@ -37,7 +37,7 @@ def _lacking(fit: Fit) -> list[str]:
     return [n for n, info in every if info.smooth and info.named and n not in fit.effects]
 
 
-def scores(fit: Fit, most: int = 2) -> list[Score]:
+def scores(fit: Fit, most: int) -> list[Score]:
     """Scores of all smooth effects that the fit lacks, and of all pairs of them; best first."""
     model, problem = fit.problem.model, fit.problem
     choices = [

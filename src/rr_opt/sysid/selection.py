@@ -315,8 +315,9 @@ class Selection:
                 for form, info in enumerate(catalogue[name].forms):
                     guesses = [{**guess, **same} for guess in info.guesses]
                     for rest in sets:
-                        choices = (*rest, Choice(name, form))
-                        yield fitted(self.model, choices, best.fit, guesses, best.fit)
+                        if name not in (one.name for one in rest):
+                            choices = (*rest, Choice(name, form))
+                            yield fitted(self.model, choices, best.fit, guesses, best.fit)
 
     @property
     def weighted(self) -> list[tuple[Candidate, float]]:
@@ -329,10 +330,7 @@ class Selection:
         return [
             one
             for one in self.tried.values()
-            if one.choices
-            and not one.given_up
-            and not self.best.predicts_better(one)
-            and (one.effects == self.best.effects or not self.needed(self.best, one))
+            if one.choices and not one.given_up and not self.best.predicts_better(one)
         ]
 
     def _simplest(self) -> Candidate:
@@ -351,8 +349,9 @@ class Selection:
         """Drop effects, or parts, that the full set can spare: two may be needed only jointly."""
         whole = self.best
         while self.best.choices:
-            fewer = [one for one in self._fewer(self.best) if not needed(whole, one)]
-            simpler = [one for one in self._simpler(self.best) if not whole.predicts_better(one)]
+            spare = [one for one in self._fewer(self.best) if not needed(whole, one)]
+            fewer = [self._ended(one) if one.given_up else one for one in spare]
+            simpler = (one for one in self._simpler(self.best) if not whole.predicts_better(one))
             best = _best(fewer) or _best(simpler)
             if best is None:
                 return
@@ -371,8 +370,6 @@ class Selection:
             # The fit below starts from there.
             self._compared.add((whole, key))
         part = self.fitted(key, [{}], whole)
-        if part.given_up and self.complete(part):
-            part = self._ended(key, part)
         if key and whole.predicts_better(part) and (whole, key) not in self._compared:
             self._compared.add((whole, key))
             again = fitted(self.model, key, whole.fit, [{}], part.fit)
@@ -385,10 +382,11 @@ class Selection:
             rest = [c for c in candidate.choices if c is not choice]
             for form, _ in self._forms(choice, fuller=False):
                 one = self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
-                yield self._ended(one.choices, one) if one.given_up else one
+                yield self._ended(one) if one.given_up else one
 
-    def _ended(self, key: tuple[Choice, ...], part: Candidate) -> Candidate:
+    def _ended(self, part: Candidate) -> Candidate:
         """A part that was given up, fitted to the end: it need not fit as well as the whole."""
+        key = part.choices
         self.tried[key] = fitted(self.model, key, part.fit, [{}])
         return self.tried[key]
 

@@ -217,8 +217,8 @@ class Identification:
         """Share of the nominal model's misfit beyond the noise (mean square) that remains, 0 to 1,
         on held-out recordings if there are any."""
         before = max(self.nominal.excess, self.selection.base.excess)
-        after = max(self.final.excess, 0.0)
-        return float(np.clip((after / before) ** 2, 0.0, 1.0)) if before > 0 else 0.0
+        left = self.final.excess / before if before > 0 else 0.0
+        return min(left**2, 1.0)
 
     @property
     def rivals(self) -> list[Candidate]:
@@ -248,7 +248,7 @@ def findings(result: Identification, choices: Sequence[Choice]) -> tuple[Finding
     for choice in choices:
         rest, removes = tuple(c for c in result.best.choices if c != choice), 1.0 - result.share
         if rest:
-            without = result.selection.tried.get(rest, result.selection.base)
+            without = result.selection.fitted(rest, [{}], result.best)
             change = without.excess**2 - result.best.excess**2
             removes = float(np.clip(change / base, 0.0, 1.0))
         start = f"{choice.name}."
@@ -284,7 +284,8 @@ def remainder_of(result: Identification) -> Remainder:
     """The misfit that remains with the answer's effects."""
     after, share = result.final.excess, result.share
     large = "small" if share <= SETTINGS.small else "large"
-    size = "none" if after <= SETTINGS.none else large
+    slight = math.hypot(SETTINGS.none, result.selection.model.form_error)
+    size = "none" if after <= slight else large
     return Remainder(size, after, share)
 
 

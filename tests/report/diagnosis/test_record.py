@@ -6,9 +6,20 @@ import numpy as np
 import pytest
 
 from rr_opt.documents.archive import strict_json
-from rr_opt.sysid.diagnosis import CHANNELS
 
 VERDICTS = ("consistent", "parameters", "missing_physics", "unexplained")
+
+CHANNELS = (
+    "actuation",
+    "constraint_axle1",
+    "constraint_axle2",
+    "rolling",
+    "yaw",
+    "mass",
+    "floor",
+    "measurement",
+    "none",
+)
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)

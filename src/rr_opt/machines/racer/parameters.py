@@ -63,9 +63,7 @@ def effect_info(effect: Effect, setting: OperatingRange) -> EffectInfo:
     own = {q.name: q for q in effect.parameters}
     return EffectInfo(
         effect.name,
-        effect.family,
         _CHANNELS[effect.family],
-        effect.sentence,
         tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
         smooth=effect.differentiable,
         upstream=effect.port == Port.ACTUATION or effect.delay is not None,
