@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 
+from rr_opt.sysid import selection
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
 from rr_opt.sysid.settings import SETTINGS
 
@@ -66,3 +68,18 @@ def test_both_share_the_weight(gain):
     weights = {one.effects[0]: weight for one, weight in search.weighted}
     assert sum(weights.values()) == pytest.approx(1.0)
     assert 0.5 < weights[search.best.effects[0]] < 0.8
+
+
+def test_none_is_put_beside_itself(monkeypatch):
+    form = SimpleNamespace(guesses=({},))
+    both = SimpleNamespace(
+        choices=(Choice("cable"), Choice("friction")), fit=SimpleNamespace(values={})
+    )
+    search: Any = Contest(answer=both)
+    known = {
+        "friction": SimpleNamespace(lookalikes=("cable",)),
+        "cable": SimpleNamespace(lookalikes=(), forms=(form,)),
+    }
+    search.model, search.progress = SimpleNamespace(catalogue=known), lambda _: None
+    monkeypatch.setattr(selection, "fitted", lambda _, choices, *__: choices)
+    assert [*Selection._lookalikes(search)] == [(Choice("cable"),)]

@@ -2,11 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.machines.racer.unknown_input import unknown_terms
-from rr_opt.sysid.remainder import dependences
+from rr_opt.sysid.diagnosis import Curve
+from rr_opt.sysid.machine import CONSTANT, Term
+from rr_opt.sysid.remainder import Dependence, dependences, stages
 from tests.sysid.made_up import base_of, with_effect
 
 COULOMB = {"coulomb_friction.force1": 0.005, "coulomb_friction.force2": 0.003}
@@ -36,3 +39,15 @@ def test_it_points_there(values, effect, channel, variable):
 def test_nothing_is_left_of_a_right_model():
     assert all(one.p_value > 1e-6 for one in left({}, ()))
     assert max(one.gain - one.degrees for one in left({}, ())) < 20
+
+
+@pytest.mark.parametrize(("more", "leads"), [(2.0, "constant"), (20.0, "phase")])
+def test_a_term_has_to_gain_more_than_its_functions_do_by_chance(more, leads):
+    def one(variable, degrees, gain):
+        columns, none = tuple(range(degrees)), np.zeros(0)
+        term = Term("rolling", variable, columns, "", none, np.zeros((0, degrees)))
+        return Dependence(term, gain, 0.5, Curve(variable, "", none, none, none))
+
+    found = [one(CONSTANT, 1, 500.0), one("phase", 6, 500.0 + more)]
+    (stage,) = stages(found, {"rolling": "a force"}, 1.0, faulty=True)
+    assert leads in stage.where
