@@ -9,6 +9,7 @@ from rr_opt.machines.ode import OdeModel
 from rr_opt.machines.registry import machine_named
 from rr_opt.model.machine import MachineExperiment, MachineRun
 from rr_opt.recordings.machine_run import held_for, input_noise
+from rr_opt.sysid.model import ChannelNoise
 
 J, ML = 0.05, 0.1
 RATE = math.sqrt(9.81 * ML / J)
@@ -16,12 +17,16 @@ RATE = math.sqrt(9.81 * ML / J)
 T = np.arange(0.0, 6.0, 0.01)
 
 
-def window(about: float, noise: float = 0.0) -> float:
+def model(about: float, noise: float = 0.0) -> OdeModel:
     angle, torque = about + 0.2 * np.sin(3 * T), 0.3 * np.sin(5 * T)
     sigma = {"q": 1e-3, "u": noise}
     runs = (MachineRun("one", T, {"u": torque}, {"q": angle}, sigma),)
     nominal = {"J": J, "ml": ML, "b": 0.0}
-    return OdeModel(MachineExperiment(machine_named("pendulum"), nominal, {}, runs)).horizon
+    return OdeModel(MachineExperiment(machine_named("pendulum"), nominal, {}, runs))
+
+
+def window(about: float, noise: float = 0.0) -> float:
+    return model(about, noise).horizon
 
 
 def test_upright_errors_grow():
@@ -33,6 +38,13 @@ def test_upright_errors_grow():
 
 def test_noisy_inputs_move_it():
     assert window(0.0, noise=0.5) < window(0.0, noise=1e-3) == 2.0
+
+
+def test_a_rate_is_as_uncertain_as_the_window_and_the_noise_say():
+    one = model(0.0, noise=1e-3)
+    expected = np.array([1e-3, 1e-3 * math.sqrt(3) / one.segment_length])
+    assert one.state_scale(()) == pytest.approx(expected)
+    assert one.with_noise([ChannelNoise(3.0)]).state_scale(()) == pytest.approx(3 * expected)
 
 
 @pytest.mark.parametrize("held", [5, 10])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import itertools
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -189,26 +190,19 @@ class OdeModel:
         """The state unchanged: no effect has a state of its own."""
         return request.state
 
-    @cached_property
-    def _state_scale(self) -> Array:
-        """The noise; for a rate, the change that adds up to as much over a window."""
-        sigma = {c: float(np.nanmedian(self.runs[0].sigma[:, k]))
-                 for k, c in enumerate(self.channels)}  # fmt: skip
-        rest = float(np.sqrt(np.mean(np.square(list(sigma.values())))))
-        own = [sigma.get(s, np.sqrt(3) * rest / self.segment_length) for s in self.machine.states]
-        return np.array(own)
-
     def state_scale(self, effects: tuple[str, ...]) -> Array:
-        """See above."""
-        return self._state_scale
+        """The noise; for a rate, the change that adds up to as much over a segment."""
+        sigma = dict(zip(self.channels, self.runs[0].sigma[0].tolist(), strict=True))
+        rate = math.hypot(*sigma.values()) * math.sqrt(3 / len(sigma)) / self.segment_length
+        return np.array([sigma.get(name, rate) for name in self.machine.states])
 
     def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
         """Zero: none is known."""
-        return np.zeros(self._state_scale.size)
+        return np.zeros(len(self.machine.states))
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Infinite: nothing is known."""
-        return np.full(self._state_scale.size, np.inf)
+        return np.full(len(self.machine.states), np.inf)
 
     # ---- prediction
 
