@@ -30,6 +30,21 @@ def test_none_is_consistent(tmp_path):
     assert rr.diagnose(write(tmp_path, dry=0.0)).verdict == "consistent"
 
 
+@pytest.mark.parametrize("last", [550, 1100])
+def test_an_angle_may_be_missing_for_seconds(tmp_path, last):
+    folder = write(tmp_path, dry=0.03)
+    head, *rows = (folder / "run0.csv").read_text().splitlines()
+    for k in range(200, last):
+        t, _, torque = rows[k].split(",")
+        rows[k] = f"{t},,{torque}"
+    (folder / "run0.csv").write_text("\n".join([head, *rows]))
+    found = rr.diagnose(folder)
+    assert [one.name for one in found.effects] == ["coulomb_friction"]
+    torque = found.effects[0].parameters["torque"]
+    assert torque.low <= 0.03 <= torque.high
+    assert found.found.after < 1.2
+
+
 def test_what_is_wrong_is_listed_at_once(tmp_path):
     folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
     text = (folder / "experiment.yaml").read_text()

@@ -168,19 +168,18 @@ class OdeModel:
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
     ) -> Array:
         """From lines fitted to the first samples of the outputs."""
-        data, piece = self.runs[segment.run], self._pieces[segment.run]
-        inputs = self.experiment.runs[piece.recording].inputs
-        t = data.t[segment.first :]
-        early = slice(segment.first, segment.first + max(int(np.searchsorted(t, t[0] + _EARLY)), 4))
-        seen = {name: float(y[piece.first + segment.first]) for name, y in inputs.items()}
-        for k, name in enumerate(self.channels):
-            y, at = data.values[early, k], data.t[early] - t[0]
+        piece = self._pieces[segment.run]
+        run, first = self.experiment.runs[piece.recording], piece.first + segment.first
+        t = run.t[first : piece.until]
+        t = t[: max(int(np.searchsorted(t, t[0] + _EARLY)), 4)]
+        seen = {name: float(y[first]) for name, y in run.inputs.items()}
+        for name in self.channels:
+            y = run.outputs[name]
             known = np.isfinite(y)
-            if known.sum() < 2:
-                y, at = data.values[:, k], data.t - t[0]
-                known = np.isfinite(y) & (np.abs(at) <= 10 * _EARLY)
-            slope, first = np.polyfit(at[known], y[known], 1)
-            seen |= {name: float(first), f"{name}_rate": float(slope)}
+            # In a gap, however long, the nearest samples on both sides of it say the most.
+            filled = np.interp(t, run.t[known], y[known])
+            slope, there = np.polyfit(t - t[0], filled, 1)
+            seen |= {name: float(there), f"{name}_rate": float(slope)}
         begun = self.machine.start(seen)
         return np.array([begun[name] for name in self.machine.states])
 

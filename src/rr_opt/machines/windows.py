@@ -90,6 +90,7 @@ def _motion(model: Predictable) -> float:
     for k, run in enumerate(model.runs):
         for one in segments({k: run}, _LENGTHS[-1]):
             y = run.values[one.first : one.until] / run.sigma[one.first : one.until]
+            y = y[:, np.isfinite(y).any(axis=0)]
             parts.append((y - np.nanmean(y, axis=0)).ravel())
     return float(np.sqrt(np.nanmean(np.concatenate(parts) ** 2)))
 
