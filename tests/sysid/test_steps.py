@@ -50,6 +50,28 @@ def test_as_with_steps_of_half_a_millisecond(effect, monkeypatch):
     assert paths[0] == pytest.approx(paths[1], abs=1e-4)
 
 
+@pytest.mark.parametrize("before", [0.5, 0.503])
+@pytest.mark.parametrize(
+    ("values", "most"),
+    [({}, 1e-4), ({"servo_lag.tau": 0.03}, 5e-6), (VALUES["lateral_slip"], 1.5e-3)],
+    ids=["", "servo_lag", "lateral_slip"],
+)
+def test_a_start_after_the_first_sample(values, most, before, monkeypatch):
+    # dphi may jump as the command starts, at a sample or between two.
+    effects = tuple({name.split(".")[0] for name in values})
+    given = experiment(((SineGait(0.8, 1.0, 0.4), "rest"),), seconds=4.0, rate=100.0)
+    (run,) = given.runs
+    recording = replace(run.recording, t=run.recording.t - before)
+    paths = []
+    for longest in (None, 5e-5):
+        if longest:
+            monkeypatch.setattr(racer_steps, "_LONGEST", longest)
+            monkeypatch.setattr(racer_steps, "_SHARP", longest)
+        model = RollerRacer(replace(given, runs=(replace(run, recording=recording),)))
+        paths.append(predicted(model, 0, values, effects, np.zeros(6)))
+    assert paths[0] == pytest.approx(paths[1], abs=most)
+
+
 def test_sliding_wheels_take_shorter_steps_than_creeping_ones():
     model, effects = RollerRacer(experiment()), ("lateral_slip",)
     start, segment = np.zeros(6), segments({0: model.runs[0]})[0]

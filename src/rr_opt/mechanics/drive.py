@@ -16,9 +16,9 @@ class Drive:
 
     at      t (n,) s -> phi, dphi, ddphi (3, n): rad, rad/s, rad/s2
     period  s
-    rest    the robot stands still until t = 0; else phi is periodic
+    rest    the robot stands still until t = 0, where dphi may jump; else phi is periodic
     jumps   times at which dphi jumps, (n,) s, increasing: those of one period if phi is periodic,
-            else from t = 0 on to where the last period repeats. None if there are none
+            else from the start on to where the last period repeats. None if there are none
     """
 
     at: Callable[[Array], Array]
@@ -28,7 +28,7 @@ class Drive:
 
     @property
     def smooth(self) -> bool:
-        """Whether dphi never jumps."""
+        """Whether dphi never jumps, but at a start from rest."""
         return self.jumps is None
 
     def jumps_within(self, low: float, high: float) -> Array:

@@ -100,6 +100,15 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
         acceleration = np.diff(at_edges[1]) / h
         nodes = np.concatenate([nodes, np.tile(acceleration, (1, 3, 1))])
         at = np.vstack([at, np.append(acceleration, acceleration[-1])[:: steps.each]])
+    k = int(np.searchsorted(edges, 0.0)) - 1
+    if drive.rest and not mean and 0 <= k < h.size:
+        # The command starts in this step, where dphi may jump: phi is a straight line, so that dphi
+        # amounts to the change of phi.
+        (begin, end), (before, after) = at_edges[:, k : k + 2]
+        rate = (end - begin) / h[k]
+        nodes[0, 1, k], nodes[1, :, k] = (begin + end) / 2, rate
+        if steps.stiff:
+            nodes[2, ::2, k] = 2 * (rate - before) / h[k], 2 * (after - rate) / h[k]
     return DrivePath(h, nodes, at, steps.each)
 
 
@@ -205,6 +214,8 @@ def drive_slopes(
         return drive_path(drive, steps, late, mean=not here.smooth)
 
     path = path_at(given)
+    # The step that begins nearest to the start of the command.
+    first = int(np.argmin(np.abs(steps.edges[:-1] + lateness(given, effects))))
     at = np.empty((*path.at.shape, len(moving)))
     middle = np.empty((len(path.nodes), path.h.size, len(moving)))
     for k, (_, name) in enumerate(moving):
@@ -215,9 +226,9 @@ def drive_slopes(
         nodes = (high.nodes - low.nodes) / apart
         middle[:, :, k] = nodes[:, 1]
         if here.smooth and here.rest:
-            # The onset of dphi may change within the first step: its integral has to be the change
-            # of phi.
-            at[1, 0, k] = middle[1, 0, k] = (nodes[0, 2, 0] - nodes[0, 0, 0]) / path.h[0]
+            # The start may move into the step or out of it: dphi has to amount to the change of
+            # phi.
+            middle[1, first, k] = (nodes[0, 2, first] - nodes[0, 0, first]) / path.h[first]
     return DriveSlopes(at, middle, np.array([k for k, _ in moving]))
 
 
