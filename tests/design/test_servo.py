@@ -53,6 +53,18 @@ def test_a_linear_servo_is_what_the_effect_is(name):
     )
 
 
+def test_the_order_in_which_a_robot_lists_its_effects_is_of_no_account():
+    values = {**SERVOS, "servo_backlash": {"width": 0.1}}
+    names = ["servo_lag", "servo_rate_limit", "servo_backlash", "servo_offset"]
+    t, paths = np.linspace(0, 2, 201), []
+    for listed in (names, sorted(names)):
+        uses = tuple(EffectUse(name, values[name]) for name in listed)
+        paths.append(
+            servo_drive(replace(BENCHMARK, physics=uses), SineGait(0.6, 1.0, 0.1)).at(t)[0]
+        )
+    np.testing.assert_array_equal(*paths)
+
+
 @pytest.mark.parametrize("name", SERVOS)
 def test_the_robot_reaches_the_speed_with_its_servo(name):
     problem = Problem(with_effect(name, SERVOS[name]), gait=GaitBounds(offset=Interval(-0.2, 0.2)))

@@ -72,11 +72,13 @@ _SETTLED = 20
 
 
 def servo_drive(robot: Robot, gait: Gait) -> Drive:
-    """phi(t) that the servo makes of a gait, its effects applied one after the other."""
+    """phi(t) that the servo makes of a gait, its effects applied one after the other in the
+    catalogue's order, whatever the robot's."""
     drive, joint = commanded(gait, False), free_joint(robot)
-    for use in robot.physics:
-        actuate = CATALOGUE[use.name].actuate
-        drive = actuate(drive, use.values, joint) if actuate else drive
+    values = {use.name: use.values for use in robot.physics}
+    for name, effect in CATALOGUE.items():
+        if effect.actuate and name in values:
+            drive = effect.actuate(drive, values[name], joint)
     return drive
 
 
