@@ -31,10 +31,14 @@ def numbers(record, path=""):
 
 
 def assert_same(one, other):
-    """Equal but for rounding: code that was compiled in the meantime rounds differently."""
+    """Equal but for rounding: code that was compiled in the meantime rounds differently, which
+    moves the deviations from a circle by as much as their integration is off."""
     (values, words), (others, as_well) = numbers(one), numbers(other)
     assert words == as_well
-    assert values == pytest.approx(others, rel=1e-9, abs=1e-12)
+    assert values == {
+        at: pytest.approx(value, rel=1e-9, abs=1e-8 if "circle_check" in at else 1e-12)
+        for at, value in others.items()
+    }
 
 
 @pytest.fixture
