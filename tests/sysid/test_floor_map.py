@@ -1,16 +1,18 @@
 """Where a patch of other floor is looked for: on a map of what the drag of each wheel would do."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rr_opt.machines.racer.floor_map import ROUND, STRAIGHT, STRIP, floor_map, likely, patches
+from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid import candidates, estimation
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import turned
-from tests.sysid.made_up import base_of, with_effect
+from tests.sysid.made_up import base_of, experiment, predicted, with_effect
 
 ROUND_ONE = {
     "floor_patch.multiplier": 8.0,
@@ -150,6 +152,42 @@ def test_two_halves_of_a_floor_are_told_as_what_was_believed_and_a_patch():
         "floor_patch.normal": 2.2 - math.pi,
     }
     assert model.equivalent(seen) == pytest.approx(believed)
+
+
+@pytest.mark.parametrize("effect", ["coulomb_friction", "stribeck_friction"])
+def test_with_all_that_a_patch_multiplies(effect):
+    model, effects = with_effect({}, ()), (effect, "floor_patch")
+    drag = {"kappa1": 4e-6, "kappa2": 4e-6, f"{effect}.force1": 2e-3, f"{effect}.force2": 1e-3}
+    believed = {**drag, **EDGE}
+    factor, turn = EDGE["floor_patch.multiplier"], EDGE["floor_patch.normal"] - math.pi
+    seen = {name: factor * value for name, value in drag.items()}
+    seen = {**EDGE, **seen, "floor_patch.multiplier": 1 / factor, "floor_patch.normal": turn}
+    assert model.equivalent(seen) == pytest.approx(believed)
+    start = np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
+    one, other = (predicted(model, 1, values, effects, start) for values in (seen, believed))
+    assert one == pytest.approx(other, abs=1e-5)
+    del seen["kappa2"]
+    assert model.equivalent(seen) is None
+
+
+def test_friction_of_zero_says_nothing_about_which_half_is_the_usual_one():
+    given = experiment()
+    smooth = replace(given.robot, platform2=replace(given.robot.platform2, kappa=0.0))
+    model = RollerRacer(replace(given, robot=smooth))
+    seen = {
+        **{"kappa1": 12e-6, "kappa2": 0.0, **EDGE},
+        "floor_patch.multiplier": 1 / 3,
+        "floor_patch.normal": 2.2 - math.pi,
+    }
+    assert model.equivalent(seen) == pytest.approx({"kappa1": 4e-6, "kappa2": 0.0, **EDGE})
+    assert model.equivalent({**seen, "kappa1": 0.0, "kappa2": 12e-6}) is None
+
+
+def test_what_fits_worse_is_not_told_instead():
+    model = with_effect(EDGE, ("floor_patch",))
+    found = candidates.fitted(model, (Choice("floor_patch", 1),), base_of(model).fit, [EDGE])
+    model.equivalent = lambda values: {**values, "floor_patch.edge_x": 5.0}
+    assert turned(model, found) is found
 
 
 def test_a_circle_is_no_larger_than_twice_the_room_there_was():

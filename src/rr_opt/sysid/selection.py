@@ -409,9 +409,14 @@ def _best(candidates: Iterable[Candidate]) -> Candidate | None:
 
 
 def turned(model: MachineModel, candidate: Candidate) -> Candidate:
-    """The candidate with equivalent values that are nearer to the nominal ones, if any."""
-    values = model.equivalent(candidate.fit.values)
+    """The candidate with equivalent values that are nearer to the nominal ones, if any that fit as
+    well."""
+    fit = candidate.fit
+    values = model.equivalent(fit.values)
     if values is None:
         return candidate
-    fit = candidate.fit
-    return Candidate(candidate.choices, solve(fit.problem, values, fit.states))
+    again = solve(fit.problem, values, fit.states)
+    # Not the deviances: the volumes of equivalent values differ.
+    losses = [sum(e.value for e in one.evidences.values()) for one in (again, fit)]
+    worse = losses[0] - losses[1] > 2 * SETTINGS.evidence
+    return candidate if worse else Candidate(candidate.choices, again)

@@ -16,6 +16,12 @@ from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import Term
 from rr_opt.sysid.model import Choice, Linearisation, Segment
 
+_FLOORS = (
+    *("kappa1", "kappa2"),
+    *(f"{dry}_friction.force{i}" for dry in ("coulomb", "stribeck") for i in (1, 2)),
+)
+"""What a floor patch multiplies."""
+
 
 class RollerRacer(RacerModel):
     """A Roller Racer, and where to look for what its model lacks."""
@@ -60,10 +66,13 @@ class RollerRacer(RacerModel):
         normal = math.remainder(values["floor_patch.normal"], math.tau)
         if "floor_patch.width" in values:
             return _first_edge(values, normal)
-        factor = values["floor_patch.multiplier"]
-        own = [name for name in ("kappa1", "kappa2") if name in values]
-        away = sum(math.log(values[name] / self.nominal[name]) for name in own)
-        if factor <= 0 or abs(away + len(own) * math.log(factor)) >= abs(away):
+        factor, given = values["floor_patch.multiplier"], {**self.nominal, **values}
+        own = [name for name in _FLOORS if given[name]]
+        ratios = [given[name] / self.nominal[name] for name in own if self.nominal[name]]
+        away = sum(map(math.log, ratios))
+        # What is not fitted cannot become that of the other half.
+        fixed = any(name not in values for name in own)
+        if fixed or factor <= 0 or abs(away + len(ratios) * math.log(factor)) >= abs(away):
             plain = {**values, "floor_patch.normal": normal}
             return None if plain == values else plain
         turned = math.remainder(normal + math.pi, math.tau)
