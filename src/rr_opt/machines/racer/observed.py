@@ -23,10 +23,8 @@ _WINDOW = 0.5
 class Along:
     """What an unknown input may depend on, along a predicted run of n samples.
 
-    t (n,) s;  x, y (n,) m of the joint and psi (n,) rad;  phi, dphi, ddphi (n,) rad, rad/s, rad/s2
+    t (n,) s;  x, y (n,) m of the joint and psi (n,) rad
     u       rolling speed of the wheels (4, n), in the order of PUSHES, m/s
-    w       yaw rate of platform 1 and 2 (2, n), rad/s
-    rolled  distance rolled by the wheels since the recording began (4, n), m
     places  of the wheels on the floor (4, 2, n), m
     """
 
@@ -34,12 +32,7 @@ class Along:
     x: Array
     y: Array
     psi: Array
-    phi: Array
-    dphi: Array
-    ddphi: Array
     u: Array
-    w: Array
-    rolled: Array
     places: Array
 
     @property
@@ -73,25 +66,13 @@ def _observed(
     t = data.t[segment.span]
     pose, rate = _smooth(t, made.seen[:, :3], data.values[segment.span, :3])
     states = made.states[:, :: path.each]
-    _, s1, s2, w = np.array(motion.speeds.map(t.size)(states, path.at, p))
+    _, s1, s2, _ = np.array(motion.speeds.map(t.size)(states, path.at, p))
     phi, dphi = path.at[:2]
     v = rate[0] * np.cos(pose[2]) + rate[1] * np.sin(pose[2])
     u = np.array(_rolling(mechanical).map(t.size)(np.array([v, s1, s2, dphi]), phi, p))
     places = np.array(_places(mechanical).map(t.size)(pose, phi, p)).reshape(4, 2, t.size)
-    steps = np.diff(t) * (u[:, 1:] + u[:, :-1]) / 2
-    return Along(
-        t=t,
-        x=pose[0],
-        y=pose[1],
-        psi=pose[2],
-        phi=phi,
-        dphi=dphi,
-        ddphi=np.gradient(dphi, t),
-        u=u,
-        w=np.array([w, w + dphi]),
-        rolled=np.concatenate([np.zeros((4, 1)), np.cumsum(steps, axis=1)], axis=1),
-        places=places,
-    )
+    x, y, psi = pose
+    return Along(t, x, y, psi, u, places)
 
 
 def _smooth(t: Array, predicted: Array, seen: Array) -> tuple[Array, Array]:
