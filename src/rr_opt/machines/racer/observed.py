@@ -64,8 +64,9 @@ def _observed(
     _, motion = driven(mechanical)
     data = racer.runs[segment.run]
     t = data.t[segment.span]
-    pose, rate = _smooth(t, made.seen[:, :3], data.values[segment.span, :3])
     states = made.states[:, :: path.each]
+    # Beside the joint's pose, not that of the marker or with the capture system's zeros.
+    pose, rate = _smooth(t, states[:3].T, data.values[segment.span, :3] - made.seen[:, :3])
     _, s1, s2, _ = np.array(motion.speeds.map(t.size)(states, path.at, p))
     phi, dphi = path.at[:2]
     v = rate[0] * np.cos(pose[2]) + rate[1] * np.sin(pose[2])
@@ -75,11 +76,10 @@ def _observed(
     return Along(t, x, y, psi, u, places)
 
 
-def _smooth(t: Array, predicted: Array, seen: Array) -> tuple[Array, Array]:
-    """The recording (n, k) without its noise, and its rate of change, both (k, n)."""
+def _smooth(t: Array, predicted: Array, off: Array) -> tuple[Array, Array]:
+    """The prediction plus its error, both (n, k), without noise, and its rate of change (k, n)."""
     step = float(np.median(np.diff(t)))
     half = max(round(_WINDOW / step / 2), 2)
-    off = seen - predicted
     for column in off.T:
         good = np.isfinite(column)
         column[~good] = np.interp(t[~good], t[good], column[good])
