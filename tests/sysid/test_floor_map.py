@@ -55,6 +55,18 @@ def test_a_patch_all_over_the_floor_is_what_the_wheels_own_friction_is():
     assert gains[1] < 0.1 * gains[0]
 
 
+def test_a_patch_multiplies_dry_friction_too():
+    own = {"coulomb_friction.force1": 2e-3, "coulomb_friction.force2": 2e-3}
+    patch = {"floor_patch.multiplier": 1.2, "floor_patch.radius": 50.0}
+    model = with_effect(own | patch, ("coulomb_friction", "floor_patch"))
+    values = {q.name: q.value for q in model.parameters} | own
+    effects, runs = ("coulomb_friction",), range(len(model.runs))
+    problem, states = estimation.initial(model, effects, (), values, runs)
+    floor = floor_map(model, estimation.solve(problem, values, states, 0))
+    _, (multiplier,) = floor.gains(np.ones((1, floor.slope.size)))
+    assert multiplier == pytest.approx(1.2, abs=0.02)
+
+
 def test_no_patch_gains_more_than_luck_where_there_is_none(on_plain_floor):
     floor = floor_map(*on_plain_floor)
     assert all(gain < 40 for shape in (ROUND, STRAIGHT, STRIP) for gain, _ in likely(floor, shape))

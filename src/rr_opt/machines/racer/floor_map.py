@@ -12,8 +12,9 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
+import casadi as ca
 import numpy as np
 from scipy.optimize import minimize
 
@@ -21,7 +22,9 @@ from rr_opt.array import Array
 from rr_opt.effects.floor_patch import BORDER
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.observed import Along, observed
+from rr_opt.machines.racer.parameters import values_of
 from rr_opt.machines.racer.unknown_input import PUSHES, cut, linearised_inputs
+from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.settings import SETTINGS
 
@@ -91,7 +94,6 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     """The map for a fit, over its segments, each with an initial state of its own."""
     problem, values = fit.problem, fit.values
     nq, given = len(problem.names), racer.simulator.given(values)
-    k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
     requests = problem.requests(values, fit.states)
     along = observed(racer, requests, fit.effects)
     count = max(min(min(one.t.size for one in along) // _SAMPLES, _MOMENTS), 1)
@@ -100,7 +102,8 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     scale[size : size + nq] = problem.scale
     bends, onto, slopes = [], [], []
     shared, g = np.diag(problem.prior), problem.prior * fit.u
-    pushes = [_pushes(seen, k) for seen in along]
+    drag, names = _resistance(racer.simulator.every(fit.effects))
+    pushes = [_pushes(seen, drag, values_of(given, names)) for seen in along]
     linear = linearised_inputs(racer, requests, fit.effects, problem.names, pushes, count)
     for one, part in zip(requests, linear, strict=True):
         evidence = fit.evidences[one.segment.run]
@@ -143,11 +146,24 @@ def _roots(squares: Array) -> Array:
     return np.ascontiguousarray(roots[:, :, some].swapaxes(1, 2))
 
 
-def _pushes(along: Along, k: Array) -> Array:
+def _pushes(along: Along, drag: ca.Function, p: Array) -> Array:
     """Each wheel's drag, N, as on the rest of the floor (4, 7, n)."""
     out = np.zeros((4, len(PUSHES), along.t.size))
-    out[range(4), range(4)] = -k[:, None] * along.u
+    out[range(4), range(4)] = drag.map(along.t.size)(along.u, p)
     return out
+
+
+@lru_cache
+def _resistance(effects: tuple[str, ...]) -> tuple[ca.Function, tuple[str, ...]]:
+    """(rolling speeds, p) -> what the floor beside a patch does to each wheel (4,), N; and p's
+    names."""
+    assembly = assembled(
+        tuple(name for name in effects if name != "floor_patch"), for_prediction=True
+    )
+    wheels = assembly.mechanism.wheels
+    u = ca.SX.sym("u", len(wheels))
+    forces = ca.vertcat(*(wheel.resistance(u[k]) for k, wheel in enumerate(wheels)))
+    return ca.Function("resistance", [u, assembly.p], [forces]), assembly.parameters
 
 
 _PLACES = 12
