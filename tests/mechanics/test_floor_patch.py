@@ -1,4 +1,4 @@
-"""A patch multiplies the viscous drag of the wheels on it, and of no others.
+"""A patch multiplies the viscous drag and the dry friction of the wheels on it, and of no others.
 
 With all wheels on it the robot is one with so many times the friction; with none it is unchanged.
 """
@@ -59,3 +59,22 @@ def test_drag_where_it_lies(values, place, on):
         assert np.hstack(found) == pytest.approx(np.hstack(expected), rel=1e-8, abs=1e-8)
 
     drags()
+
+
+@pytest.mark.parametrize("name", ["coulomb_friction", "stribeck_friction", "left_right_drag"])
+def test_whatever_the_floor_does_to_the_wheels_is_multiplied(name):
+    use = EffectUse("floor_patch", {"multiplier": 3.0, **CIRCLE})
+
+    @settings(REPEATABLE, max_examples=8)
+    @given(cases((name,)))
+    def multiplied(case):
+        robot, state = case
+        there = np.array([*HERE, 0.7])
+        frictionless = rolls_harder(replace(robot, physics=()), 0.0)
+        plain, patched, none = (
+            on_floor(one, state, there).torque
+            for one in (robot, replace(robot, physics=(*robot.physics, use)), frictionless)
+        )
+        assert patched - none == pytest.approx(3 * (plain - none), rel=1e-7, abs=1e-8)
+
+    multiplied()

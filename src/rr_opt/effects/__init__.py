@@ -10,11 +10,11 @@ from types import MappingProxyType
 from rr_opt.effects.effect import Effect
 
 _MODULES = """
-servo_lag servo_rate_limit servo_backlash servo_offset coulomb_friction quadratic_drag
-rolling_force_curve left_right_drag wheel_inertia axle_misalignment floor_tilt floor_patch
-lateral_slip com_offset marker_offset clock_offset zero_offset
-dragged_cable stribeck_friction
+servo_lag servo_rate_limit servo_backlash servo_offset coulomb_friction stribeck_friction
+quadratic_drag rolling_force_curve left_right_drag wheel_inertia axle_misalignment floor_tilt
+floor_patch lateral_slip com_offset marker_offset clock_offset zero_offset dragged_cable
 """
+"""What the floor does to a wheel comes before a patch of it."""
 
 _EFFECTS = [import_module(f"{__name__}.{module}").EFFECT for module in _MODULES.split()]
 CATALOGUE: Mapping[str, Effect] = MappingProxyType({one.name: one for one in _EFFECTS})
