@@ -15,10 +15,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from rr_opt.effects import lateral_slip
-from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, mechanism, robot_values
+from rr_opt.effects.coulomb_friction import SMOOTHING_SPEED
+from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, robot_values
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
-from rr_opt.motion.dynamics import dynamics_of, values_of
+from rr_opt.motion.dynamics import assembled, dynamics_of, values_of
 from rr_opt.motion.floor_motion import floor_motion
 from rr_opt.motion.integrators import cvodes
 from tests.robots import BENCHMARK
@@ -75,34 +76,39 @@ def motion_without_slip() -> np.ndarray:
     return np.array([x, y, psi])
 
 
-def pushed(values, v, s1):
+def pushed(values, v, s1, dry=0.0):
     """Force (2, N) along and square to a wheel of platform 1 at speeds v, s1 (m/s), the robot
-    straight and without yaw."""
-    robot = mechanism()
-    symbols = {name: ca.SX.sym(name) for name in values}
-    changed = lateral_slip.EFFECT.enter(robot, symbols)
-    added = changed.forces[len(robot.forces)].vector
-    own = next(force for force in robot.forces if force.platform == 1).vector
-    given = [robot.phi, robot.speeds, *robot.parameters.values(), *symbols.values()]
-    force = ca.Function("force", given, [own + added])
+    straight and without yaw, its wheels with dry friction (N)."""
+    friction = {"force1": dry, "force2": dry}
+    uses = EffectUse("lateral_slip", values), EffectUse("coulomb_friction", friction)
+    robot = replace(BENCHMARK, physics=uses)
+    assembly = assembled(tuple(use.name for use in uses))
+    of_first = assembly.mechanism.forces[::4]
+    inputs = [assembly.mechanism.phi, assembly.mechanism.speeds, assembly.p]
+    force = ca.Function("force", inputs, [sum(one.vector for one in of_first)])
     # Axle 2 slips so that the joint's ends move alike and nothing turns.
-    at = [0.0, [v, s1, s1, 0.0], *robot_values(BENCHMARK), *values.values()]
+    at = [0.0, [v, s1, s1, 0.0], values_of(robot, assembly.parameters)]
     return force(*at).full().ravel()
 
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0])
 @pytest.mark.parametrize("mu", [0.01, 0.05])
 @pytest.mark.parametrize("slip", [3e-3, 0.05])
-def test_sliding_wheels_turn_more_slowly(ratio, mu, slip):
+@pytest.mark.parametrize("dry", [0.0, 0.15, 3.0])
+def test_sliding_wheels_turn_more_slowly(ratio, mu, slip, dry):
     v, p = 0.3, dict(zip(ROBOT_PARAMETERS, robot_values(BENCHMARK), strict=True))
     most = mu * float(lateral_slip.wheel_loads(p)[1])
+
+    def resists(u):
+        return p["k1"] * u + dry * most * np.tanh(u / SMOOTHING_SPEED)
 
     def yields(u):
         return np.sqrt(slip**2 + u**2 + lateral_slip.SMOOTHING_SPEED**2) / most
 
-    u = brentq(lambda u: ratio * p["k1"] * (v - ratio * u) - u / yields(u), 0.0, v / ratio)
-    along, square = pushed({"creep_compliance": 0.0, "mu": mu, "mu_ratio": ratio}, v, slip)
-    assert along == pytest.approx(-p["k1"] * (v - ratio * u), rel=0.01)
+    u = brentq(lambda u: ratio * resists(v - ratio * u) - u / yields(u), 0.0, v / ratio)
+    slides = {"creep_compliance": 0.0, "mu": mu, "mu_ratio": ratio}
+    along, square = pushed(slides, v, slip, dry * most)
+    assert along == pytest.approx(-resists(v - ratio * u), rel=0.01)
     assert square == pytest.approx(-slip / yields(u), rel=0.01)
     if ratio == 1.0:
         # On the circle of friction.

@@ -14,7 +14,7 @@ servo_lag servo_rate_limit servo_backlash servo_offset coulomb_friction stribeck
 quadratic_drag rolling_force_curve left_right_drag wheel_inertia axle_misalignment floor_tilt
 floor_patch lateral_slip com_offset marker_offset clock_offset zero_offset dragged_cable
 """
-"""What the floor does to a wheel comes before a patch of it."""
+"""What the floor does to a wheel comes before a patch of it, and that before sliding on it."""
 
 _EFFECTS = [import_module(f"{__name__}.{module}").EFFECT for module in _MODULES.split()]
 CATALOGUE: Mapping[str, Effect] = MappingProxyType({one.name: one for one in _EFFECTS})

@@ -16,8 +16,10 @@ circle for e = 1), a lag of e u, and R(w) the resistance of the wheel at the rol
 
     F_side = -s/Y,    -e R(w - e u) = u/Y,    Y = sqrt(creep^2 + (s^2 + u^2 + s0^2)/(mu N)^2)
 
-e is `mu_ratio`; e = 0 leaves rolling as it is. Both wheels of an axle, which slide sideways
-together, have the same u.
+e is `mu_ratio`; e = 0 leaves rolling as it is. R is all that the floor does to the wheel: dry
+friction and patches too. About w it is taken as linear, as dry friction is until the wheel stops,
+or as constant where it falls with the speed. A wheel does not turn backwards: one that resists more
+than its contact can hold is dragged along at e u = w, by u/(e Y).
 
 Contacts begin to slide more or less gradually, and physics engines that are given the same friction
 differ by about a tenth in the breakaway force. So sliding is fitted together with creep, which adds
@@ -30,55 +32,55 @@ from dataclasses import replace
 import casadi as ca
 
 from rr_opt.effects.effect import Effect, Parameter, Port
-from rr_opt.mechanics.kinematics import Force, Mechanism, wheel_loads
+from rr_opt.mechanics.kinematics import Force, Mechanism, Wheel, wheel_loads
 
 SMOOTHING_SPEED = 1e-4
 """s0, m/s."""
 _ITERATIONS = 4
 """Newton iterations for u, from 0. They do not overshoot, and end within 1 % of u as long as a
 wheel's resistance is at most 0.9 of what its contact can hold."""
+_NONE = 1e-9
+"""Keeps a lag finite that e = 0 leaves without a limit."""
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
-    e = values["mu_ratio"]
+    e, loads = values["mu_ratio"], wheel_loads(mechanism.parameters)
     pushes = []
-    for platform, load in wheel_loads(mechanism.parameters).items():
-        wheels = [
-            (wheel, mechanism.rolling_speed(wheel))
-            for wheel in mechanism.wheels
-            if wheel.platform == platform
-        ]
-        s, grip = mechanism.speeds[platform], values["mu"] * load
+    for wheel in mechanism.wheels:
+        s, grip = mechanism.speeds[wheel.platform], values["mu"] * loads[wheel.platform]
+        w = mechanism.rolling_speed(wheel)
         at_rest = values["creep_compliance"] ** 2 + (s**2 + SMOOTHING_SPEED**2) / grip**2
-        lag = ca.SX.sym("lag")
-        resistance = sum((wheel.resistance(w - e * lag) for wheel, w in wheels), ca.SX(0)) / 2
-        u = _lag(resistance, lag, e, at_rest, grip)
-        push = -s / ca.sqrt(at_rest + (u / grip) ** 2)
-        for wheel, w in wheels:
-            sideways = ca.vertcat(-wheel.direction[1], wheel.direction[0])
-            relief = wheel.resistance(w - e * u) - wheel.resistance(w)
-            vector = push * sideways + relief * wheel.direction
-            pushes.append(Force(wheel.platform, wheel.point, vector))
+        lag = _lag(wheel, w, e, at_rest, grip)
+        Y = ca.sqrt(at_rest + (e * lag / grip) ** 2)
+        sideways = ca.vertcat(-wheel.direction[1], wheel.direction[0])
+        relief = (e > 0) * (-lag / Y - wheel.resistance(w))
+        vector = -s / Y * sideways + relief * wheel.direction
+        pushes.append(Force(wheel.platform, wheel.point, vector))
     constrained = mechanism.constrained - {"s1", "s2"}
     return replace(mechanism, forces=(*mechanism.forces, *pushes), constrained=constrained)
 
 
-def _lag(resistance: ca.SX, lag: ca.SX, e: ca.SX, at_rest: ca.SX, grip: ca.SX) -> ca.SX:
-    """u, m/s, for a wheel's resistance (N) as it depends on `lag`; Y^2 is at_rest + (u/grip)^2."""
-    slope = ca.jacobian(resistance, lag)
-    force, relief = (-e * ca.substitute(part, lag, 0) for part in (resistance, slope))
-    u = ca.SX(0)
+def _lag(wheel: Wheel, w: ca.SX, e: ca.SX, at_rest: ca.SX, grip: ca.SX) -> ca.SX:
+    """u/e, m/s, of a wheel whose axle moves at w along it; Y^2 is at_rest + (u/grip)^2."""
+    speed = ca.SX.sym("speed")
+    law = wheel.resistance(speed)
+    R, slope = (
+        ca.substitute(part, speed, w) for part in (law, ca.fmin(ca.jacobian(law, speed), 0))
+    )
+    most = ca.fabs(w) / (e**2 + _NONE)
+    lag = ca.SX(0)
     for _ in range(_ITERATIONS):
-        Y = ca.sqrt(at_rest + (u / grip) ** 2)
-        residual = force + relief * u - u / Y
-        u += residual / (at_rest / Y**3 - relief)
-    return u
+        Y = ca.sqrt(at_rest + (e * lag / grip) ** 2)
+        residual = e**2 * slope * lag - R - lag / Y
+        lag += residual / (at_rest / Y**3 - e**2 * slope)
+        lag = ca.fmax(-most, ca.fmin(lag, most))
+    return lag
 
 
 EFFECT = Effect(
     name="lateral_slip",
     family="contact",
-    port=Port.CONSTRAINT,
+    port=Port.FORCE,
     parameters=(
         Parameter("creep_compliance", "m/(N s)", (0.0, 20.0), 0.002),
         Parameter(

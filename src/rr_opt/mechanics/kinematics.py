@@ -109,8 +109,14 @@ class Wheel:
     resistances: tuple[Law, ...] = ()
 
     def resistance(self, u: ca.SX) -> ca.SX:
-        """The force of the floor along the rolling direction, N, at the rolling speed u, m/s."""
-        return sum((law(self, u) for law in self.resistances), ca.SX(0))
+        """The force of the floor along the rolling direction, N, at the rolling speed u, m/s.
+
+        A law is given the wheel as it was before, so that it may build on the resistance of then.
+        """
+        laws = self.resistances
+        return sum(
+            (law(replace(self, resistances=laws[:k]), u) for k, law in enumerate(laws)), ca.SX(0)
+        )
 
 
 @dataclass(frozen=True)
