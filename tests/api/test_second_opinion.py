@@ -9,6 +9,7 @@ from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.api import optimise
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import Status
 
 PROBLEM = PROBLEMS["reference"]
@@ -55,3 +56,11 @@ def test_limits_that_clash_need_no_scan():
     refused = rr.maximize_speed(tight)
     assert refused.status is Status.INFEASIBLE
     assert "sweep" not in refused.message
+
+
+def test_shapes_are_compared_with_what_the_servo_can_do(monkeypatch):
+    """Its rate limit lies below the problem's, within which the sweep would find faster sines."""
+    slow = (EffectUse("servo_rate_limit", {"rate_limit": 0.7 * PROBLEM.limits.rate}),)
+    monkeypatch.setattr(optimise.design, "compare_shapes", lambda problem, *_: [FIND(problem)])
+    found = rr.shapes(replace(PROBLEM, robot=replace(PROBLEM.robot, physics=slow)))
+    assert found.status is Status.OPTIMAL, found.message

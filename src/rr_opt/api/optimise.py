@@ -145,9 +145,9 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
     optima = design.compare_shapes(problem, progress)
     swept = None
     if any(one.best for one in optima):
-        # One for all: it sweeps the sines, whatever the shape.
+        # One for all: it sweeps the sines, whatever the shape, as the optima are posed.
         progress("sweep of all sines")
-        swept = verify.sweep(problem)
+        swept = verify.sweep(optima[0].problem)
     answers = []
     for one in optima:
         own = f"{name}, {family(one)}"
