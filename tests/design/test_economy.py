@@ -10,6 +10,7 @@ from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.api.optimise import maximize_speed as checked
 from rr_opt.design.landscape import mean_positive
 from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.formatting import number
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.steady_cycle import energy, steady_cycle
 from rr_opt.outcome import InputError, Status
@@ -70,6 +71,15 @@ def test_every_check_confirms_the_cheapest_gait(case):
     assert answer.cost == cheap.cost
     assert abs(answer.sweep.gap) < 1e-6
     assert answer.sweep.cost == pytest.approx(cheap.cost, rel=1e-8)
+
+
+def test_the_best_of_a_sweep_is_the_cheapest(case):
+    """The climb ends on the least speed, below that of the grid's best."""
+    problem, floor, cheap = case
+    swept = rr.sweep(cheapest(problem, speed=floor), 1000)
+    assert swept.found.best.speed**2 > swept.best.speed**2
+    assert 1 / swept.best.merit == pytest.approx(cheap.cost, rel=1e-6)
+    assert f"lowest cost of transport, {number(cheap.cost)}" in swept.message
 
 
 def test_a_dearer_gait_is_refuted(case):

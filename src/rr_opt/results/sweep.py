@@ -20,7 +20,8 @@ _COLUMNS = (
 
 @dataclass(frozen=True, repr=False)
 class Sweep(Result):
-    """Gaits over the whole bounds: `found` has all of them as arrays, `best` the fastest."""
+    """Gaits over the whole bounds: `found` has all of them as arrays, `best` is the best by the
+    problem's objective."""
 
     FILE = "sweep.json"
     OTHERS = ("sweep.csv",)
@@ -34,9 +35,9 @@ class Sweep(Result):
 
     @property
     def best(self) -> Found | None:
-        """The fastest gait that respects every limit, on the grid or close to its best points."""
+        """The best gait that respects every limit, on the grid or close to its best points."""
         both = [one for one in (self.found.refined, self.found.best) if one is not None]
-        return max(both, key=lambda one: abs(one.speed), default=None)
+        return max(both, key=lambda one: one.merit, default=None)
 
     @property
     def status(self) -> Status:
@@ -48,10 +49,11 @@ class Sweep(Result):
         """The outcome in a sentence."""
         if self.best is None:
             return f"None of the {self.found.points} gaits tried respects every limit."
-        return (
-            f"The fastest of {self.found.points} gaits drives {direction_text(self.best.speed)} "
-            f"at {pace_text(self.best.speed)}."
-        )
+        which = "fastest"
+        if self.problem.objective != "speed":
+            which = f"one with the lowest cost of transport, {number(1 / self.best.merit)},"
+        tried = f"The {which} of {self.found.points} gaits"
+        return f"{tried} drives {direction_text(self.best.speed)} at {pace_text(self.best.speed)}."
 
     @property
     def warnings(self) -> tuple[str, ...]:
