@@ -12,6 +12,7 @@ from rr_lab.run import Conditions
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.steady_cycle import cycle_of
+from rr_opt.routing.plan import RoutePlan
 from tests.robots import BENCHMARK
 
 EFFECTS = {
@@ -52,3 +53,47 @@ def test_its_file_is_driven_alike(found, tmp_path):
     if found.robot.physics[0].name != "lateral_slip":  # which a simulation leaves out
         assert simulated.measured.speed == pytest.approx(found.speed, rel=2e-3)
     assert np.isfinite(simulated.measured.peak_torque)
+
+
+LIMIT = 2.0
+"""rad/s, below the limit of the servo without effects."""
+
+
+@pytest.fixture
+def limited():
+    values = {"servo_rate_limit": {"rate_limit": LIMIT}, "servo_lag": {"tau": 0.1}}
+    uses = tuple(EffectUse(*use) for use in values.items())
+    gait = GaitBounds(Interval(0.1, 1.0), Interval(0.5, 2.0), Interval(0.0, 0.0))
+    return Problem(replace(BENCHMARK, physics=uses), gait=gait)
+
+
+def assert_posed(result):
+    """The servo's rate limit is one of the gaits, and only its lag is ignored."""
+    assert result.problem.limits.rate == LIMIT
+    (warning,) = result.warnings
+    assert warning.startswith("servo_lag is ignored")
+    assert "servo_rate_limit" not in warning
+
+
+def test_a_sweep_keeps_the_servos_rate_limit(limited):
+    swept = rr.sweep(limited, 60)
+    assert_posed(swept)
+    assert swept.best.gait.peak_rate == pytest.approx(LIMIT)
+
+
+def test_a_turn_chart_keeps_it(limited, monkeypatch):
+    monkeypatch.setattr("rr_opt.api.turn._TESTED", (6, 4, 11))
+    chart = rr.turn_chart(limited)
+    assert_posed(chart)
+    rate = 2 * np.pi * chart.seen.amplitude[:, None] / chart.seen.period
+    assert 0 < rate[chart.seen.keeps.any(axis=2)].max() <= LIMIT * (1 + 1e-6)
+
+
+def test_a_route_is_planned_with_it(limited, monkeypatch):
+    def none(route, *_, **__):
+        return RoutePlan(rr.Status.INFEASIBLE, "None.", route, route.problem, "forward")
+
+    monkeypatch.setattr("rr_opt.api.route.plan_route", none)
+    found = rr.route(rr.Route(limited, (rr.Straight(1),)))
+    assert found.plan.problem.limits.rate == LIMIT
+    assert all("servo_rate_limit" not in warning for warning in found.warnings)

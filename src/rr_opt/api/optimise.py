@@ -14,6 +14,7 @@ from rr_opt.design.maximize_speed import Optimum
 from rr_opt.messages import listed
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
+from rr_opt.motion.servo import servo_limited
 from rr_opt.outcome import InputError, Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
@@ -166,6 +167,7 @@ def sweep(
     """
     problem = problem_of(problem)
     require_friction(problem.robot)
-    counts = max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
-    tried = verify.sweep(problem, counts, lambda done, of: progress(f"gait {done} of {of}"))
-    return Sweep(*identity(problem), problem, tried)
+    posed = servo_limited(problem)
+    counts = max(2, math.ceil(points ** (1 / max(len(free_decisions(posed)), 1))))
+    tried = verify.sweep(posed, counts, lambda done, of: progress(f"gait {done} of {of}"))
+    return Sweep(*identity(problem), posed, tried)

@@ -15,6 +15,7 @@ from rr_opt.design.study.case import portable
 from rr_opt.files.issue import Issue
 from rr_opt.files.route_file import RouteStudy, read_route, read_routes
 from rr_opt.model.route import Route
+from rr_opt.motion.servo import servo_limited
 from rr_opt.outcome import RollerRacerError, Status
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.route import DrivenRoute
@@ -61,6 +62,8 @@ def route(
     """
     if isinstance(asked, str | Path):
         asked = load_route(asked)
+    sha256 = asked.sha256 or fingerprint(asked)
+    asked = replace(asked, problem=servo_limited(asked.problem))
     plan = plan_route(with_reserve(asked) if feedback else asked, progress, creeps=feedback)
     plan = replace(plan, route=asked)
     check = control = None
@@ -71,9 +74,7 @@ def route(
         if feedback:
             progress("feedback")
             control = controller(plan, replace(plan.problem, limits=asked.problem.limits))
-    return DrivenRoute(
-        asked.name, asked.sha256 or fingerprint(asked), plan, check, feedback=control
-    )
+    return DrivenRoute(asked.name, sha256, plan, check, feedback=control)
 
 
 def routes(

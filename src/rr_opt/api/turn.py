@@ -7,6 +7,7 @@ from rr_opt.api.optimise import checked_optimum, driven_optimum, require_exact, 
 from rr_opt.design.turn import Target, arc_of, checked, fastest_turn
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
+from rr_opt.motion.servo import servo_limited
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.turn import FastestTurn, TurnChart
 from rr_opt.verify.replay import check_circle
@@ -66,11 +67,12 @@ def turn_chart(problem: Problem | PathLike, *, progress: Progress = quiet) -> Tu
     """
     problem = problem_of(problem)
     require_friction(problem.robot)
+    posed = servo_limited(problem)
     progress("chart")
-    seen = turn_map(problem, _DRAWN)
+    seen = turn_map(posed, _DRAWN)
     progress("the paper's claim")
-    fine = turn_map(problem, _TESTED)
+    fine = turn_map(posed, _TESTED)
     progress("tightest circle")
-    tight = tightest(problem)
+    tight = tightest(posed)
     claims = sign_claim(fine), radius_claim(fine)
-    return TurnChart(*identity(problem), problem, seen, tight, *claims)
+    return TurnChart(*identity(problem), posed, seen, tight, *claims)

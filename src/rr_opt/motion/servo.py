@@ -40,13 +40,19 @@ def _in_series(one: LinearServo, other: LinearServo) -> LinearServo:
     )
 
 
+def servo_limited(problem: Problem) -> Problem:
+    """The problem with the rate that its robot's servo reaches as a limit."""
+    rate = min(problem.limits.rate, linear_servo(problem.robot).rate)
+    limited = replace(problem, limits=replace(problem.limits, rate=rate))
+    return limited.read_from(problem.name, problem.sha256)
+
+
 def for_joint(problem: Problem) -> Problem:
     """The problem posed for the joint; itself where the servo follows its command exactly."""
     servo = linear_servo(problem.robot)
     if problem.command or servo == LinearServo():
         return problem
-    gait, limits = problem.gait, problem.limits
-    amplitude = gait.amplitude
+    gait, amplitude = problem.gait, problem.gait.amplitude
     if servo.lags and gait.shape == "sine":
         gains = servo.gain(np.geomspace(gait.period.low, gait.period.high, _PERIODS))
         room = 0.0 if amplitude.fixed and gait.period.fixed else _ROOM
@@ -56,9 +62,8 @@ def for_joint(problem: Problem) -> Problem:
         )
     offset = Interval(gait.offset.low + servo.shift, gait.offset.high + servo.shift)
     return replace(
-        problem,
+        servo_limited(problem),
         gait=replace(gait, amplitude=amplitude, offset=offset),
-        limits=replace(limits, rate=min(limits.rate, servo.rate)),
         command=CommandBounds(gait.amplitude, servo),
     ).read_from(problem.name, problem.sha256)
 

@@ -1,6 +1,8 @@
 """A gait, its speed and its robot as facts and tables, and the effects that the gait ignores."""
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from rr_opt.documents import document as doc
 from rr_opt.effects.effect import Port
@@ -8,8 +10,9 @@ from rr_opt.formatting import QUANTITIES, direction_text, number, speed_text, wi
 from rr_opt.messages import listed
 from rr_opt.model.gait import FourierGait, FreeGait, Gait
 from rr_opt.model.parameters import PARAMETERS, parameters_of
-from rr_opt.model.robot import Robot
+from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
+from rr_opt.motion.servo import linear_servo
 
 _NEGLIGIBLE = 1e-4
 """A smaller coefficient, relative to the largest, is 0 to within the optimiser's tolerance."""
@@ -61,10 +64,13 @@ def signed_fact(label: str, speed: float, detail: str) -> doc.Fact:
 
 
 def ignored_effects(robot: Robot, *, commanded: bool = False) -> tuple[str, ...]:
-    """One sentence naming the robot's effects that steady motion ignores; empty if none.
+    """One sentence naming the robot's effects that steady motion ignores; empty if none. A rate
+    limit of the servo is none of them, as gaits and drives keep it.
 
     commanded  gaits are the servo's commands, so its effects count
     """
+    uses = [use for use in robot.physics if not math.isfinite(_rate(robot, use))]
+    robot = replace(robot, physics=tuple(uses))
     names, of_servo = ignored_in_steady_cycle(robot), ignored_in_steady_cycle(robot, Port.ACTUATION)
     if commanded:
         names, of_servo = tuple(name for name in names if name not in of_servo), ()
@@ -78,6 +84,11 @@ def ignored_effects(robot: Robot, *, commanded: bool = False) -> tuple[str, ...]
     if of_servo:
         text += f" Command the servo so that it follows this angle despite {listed(of_servo)}."
     return (text,)
+
+
+def _rate(robot: Robot, use: EffectUse) -> float:
+    """The largest that an effect leaves the servo, rad/s."""
+    return linear_servo(replace(robot, physics=(use,))).rate
 
 
 _SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
