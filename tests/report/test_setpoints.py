@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import Limits
 from rr_opt.motion.dynamics import dynamics_of
-from rr_opt.motion.setpoints import BLEND, Cost, cost, interpolated, set_points
+from rr_opt.motion.setpoints import (
+    BLEND,
+    Cost,
+    cost,
+    excess,
+    interpolated,
+    set_points,
+    within_limits,
+)
 from rr_opt.motion.steady_cycle import cycle_of, steady_cycle
 from rr_opt.outcome import InputError
 from tests.motion.gaits import EVERY
@@ -142,6 +151,16 @@ def test_a_rate_that_makes_no_sense_is_reported(rate):
 def test_a_gait_that_stands_still_has_no_set_points():
     with pytest.raises(InputError, match="amplitude 0"):
         set_points(SineGait(0.0, 1.0, 0.3), 50.0)
+
+
+def test_the_margin_to_the_singular_posture_is_kept():
+    """By set points of a gait that keeps half of it, and every other limit."""
+    limits, one, two = Limits(math.pi, math.inf, math.inf), BENCHMARK.platform1, BENCHMARK.platform2
+    gait = SineGait(math.acos((limits.singularity / 2 - two.c) / one.c), 2.0)
+    assert excess(BENCHMARK, limits, gait) == pytest.approx(0.5)
+    played = within_limits(BENCHMARK, limits, set_points(gait, 50.0)).played
+    assert one.c * math.cos(played.peak_angle) + two.c >= limits.singularity * (1 - 2e-4)
+    assert played.amplitude > 0.95 * gait.amplitude
 
 
 def test_without_friction_there_is_no_speed_to_lose():
