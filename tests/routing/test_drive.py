@@ -11,6 +11,7 @@ import pytest
 
 import rr_opt as rr
 from benchmarks.route.problems import ROBOTS
+from rr_opt.design.maximize_speed import Optimum
 from rr_opt.model.ballast import with_inertia_ratio
 from rr_opt.model.route import Pose
 from rr_opt.routing.path import Leg
@@ -68,6 +69,19 @@ def test_what_cannot_be_driven_is_named():
     assert found.status is rr.Status.INFEASIBLE
     assert "piece 2" in found.message
     assert "radius of" in found.message
+    assert found.command is None
+
+
+def test_without_an_inertia_ratio_there_is_no_drive(monkeypatch):
+    """The robot as built is not the one that was asked for."""
+
+    def none(problem):
+        return Optimum(rr.Status.NOT_CONVERGED, "No start led to an optimum.", problem)
+
+    monkeypatch.setattr("rr_opt.routing.plan.maximize_speed", none)
+    found = rr.route(rr.Route(rr.shipped(), (rr.Straight(1),)))
+    assert found.status is rr.Status.NOT_CONVERGED
+    assert found.message == "No start led to an optimum."
     assert found.command is None
 
 

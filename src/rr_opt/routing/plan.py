@@ -97,14 +97,15 @@ def plan_route(
         raise InputError("Read a route without pieces. Expected at least one: `- straight: 1 m`.")
     require_friction(route.problem.robot)
     problem = route.problem
+    ways: tuple[Way, ...] = ("forward", "backward")
+    ways = tuple(way for way in ways if route.direction in ("either", way))
     if problem.inertia_ratio:
         progress("inertia ratio")
         fastest = maximize_speed(problem)
-        problem = replace(problem, inertia_ratio=None)
-        problem = problem.with_robot(fastest.robot) if fastest.robot else problem
+        if fastest.robot is None:
+            return RoutePlan(fastest.status, fastest.message, route, problem, ways[0])
+        problem = replace(problem, inertia_ratio=None).with_robot(fastest.robot)
     problem = _near_the_path(problem, route.tolerance.path)
-    ways: tuple[Way, ...] = ("forward", "backward")
-    ways = tuple(way for way in ways if route.direction in ("either", way))
     progress("gaits")
     charts: dict[Way, Chart] = {way: chart(problem, way) for way in ways}
     paths: dict[Way, list[Leg]] = {way: _path(route, charts[way]) for way in ways}
