@@ -11,7 +11,7 @@ from benchmarks.turn.problems import PROTOTYPE, SHORT, robot
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval
 from rr_opt.motion.circle import circle_of
-from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.motion.steady_cycle import energy, grip_needed, steady_cycle
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
 
@@ -25,6 +25,24 @@ def test_circles_are_those_of_the_simulation():
         made = circle_of(steady_cycle(PROTOTYPE.robot, gait).cycle)
         assert seen.curvature[i, j, k] == pytest.approx(made.curvature, rel=1e-4, abs=1e-9)
         assert seen.speed[i, j, k] == pytest.approx(made.speed, rel=1e-4)
+
+
+@pytest.mark.parametrize("name", ["grip", "power"])
+def test_gaits_of_the_map_keep_every_limit(name):
+    """A limit at the middle of what they need by simulation leaves half of them."""
+    counts = (3, 2, 9)
+    seen, robot = turn_map(PROTOTYPE, counts), PROTOTYPE.robot
+    kept, needed = np.argwhere(seen.keeps), []
+    for i, j, k in kept:
+        gait = SineGait(seen.amplitude[i], seen.period[j], seen.offset[k])
+        steady = steady_cycle(robot, gait)
+        grip, power = max(grip_needed(steady, robot)), energy(robot, steady).power
+        needed.append({"grip": grip, "power": power}[name])
+    limits = replace(PROTOTYPE.limits, **{name: float(np.median(needed)) * 1.001})
+    less = turn_map(replace(PROTOTYPE, limits=limits), counts)
+    few = kept[np.array(needed) <= getattr(limits, name)]
+    assert np.argwhere(less.keeps).tolist() == few.tolist()
+    assert 0 < len(few) < len(kept)
 
 
 def test_no_gait_is_tighter():

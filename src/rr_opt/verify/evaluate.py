@@ -125,13 +125,13 @@ def evaluate(
             progress(min(done + _ROWS, len(wanted)) * shape[-1], len(wanted) * shape[-1])
     seen = np.array([*arrays, *(part.reshape(shape) for part in (speed, torque, turn))])
     flat = seen[:, np.isfinite(arrays[1])]
-    plain = _evaluated(problem, flat, failed)
+    plain = evaluated(problem, flat, failed)
     reached = plain.merit.max(initial=0.0) if problem.objective == "speed" else 0.0
     line = _torque_line(problem, grid, seen, reached, tolerance)
-    return _evaluated(problem, np.concatenate([flat, line], axis=1), failed)
+    return evaluated(problem, np.concatenate([flat, line], axis=1), failed)
 
 
-def _evaluated(problem: Problem, points: Array, failed: int) -> Evaluated:
+def evaluated(problem: Problem, points: Array, failed: int = 0) -> Evaluated:
     """points (7, K): decisions, speed, peak torque, turn."""
     decisions, (speed, torque, turn) = points[:4], points[4:]
     found = Speeds(speed, turn, torque, np.isfinite(speed))
@@ -148,33 +148,25 @@ def _evaluated(problem: Problem, points: Array, failed: int) -> Evaluated:
     return Evaluated(decisions, speed, torque, turn, value, kept, failed)
 
 
-def within(
-    problem: Problem, amplitude: Array, offset: Array, slack: float = _SLACK
-) -> dict[str, Mask]:
-    """Which gaits satisfy the limits on angle and singularity; slack: relative."""
+def within(problem: Problem, amplitude: Array, offset: Array) -> dict[str, Mask]:
+    """Which gaits satisfy the limits on angle and singularity."""
     limits, far = problem.limits, np.abs(amplitude) + np.abs(offset)
     S1 = least_S1(problem.robot, amplitude, offset)
     return {
-        "angle": far <= limits.angle * (1 + slack),
-        "singularity": limits.singularity * (1 - slack) <= S1,
-    }
-
-
-def kept_limits(problem: Problem, gaits: Array, found: Speeds, slack: float) -> dict[str, Mask]:
-    """By limit, which gaits satisfy it: amplitude, period and offset come first in `gaits`, and
-    found are their speeds. Excludes the grip, which the model of the speeds leaves out."""
-    (amplitude, period, offset), limits, speed = gaits[:3], problem.limits, found.speed
-    ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
-    return {
-        "rate": np.abs(amplitude) * 2 * math.pi <= limits.rate * period * (1 + slack),
-        **within(problem, amplitude, offset, slack),
-        "torque": found.peak_torque <= limits.torque * (1 + slack),
-        "direction": ahead[problem.direction],
+        "angle": far <= limits.angle * (1 + _SLACK),
+        "singularity": limits.singularity * (1 - _SLACK) <= S1,
     }
 
 
 def _keeps(problem: Problem, decisions: Array, found: Speeds) -> dict[str, Mask]:
-    limits, kept = problem.limits, kept_limits(problem, decisions, found, _SLACK)
+    (amplitude, period, offset), limits, speed = decisions[:3], problem.limits, found.speed
+    ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
+    kept = {
+        "rate": np.abs(amplitude) * 2 * math.pi <= limits.rate * period * (1 + _SLACK),
+        **within(problem, amplitude, offset),
+        "torque": found.peak_torque <= limits.torque * (1 + _SLACK),
+        "direction": ahead[problem.direction],
+    }
     less, equal = turn_rows(problem, np.abs(found.speed), found.turn, decisions[1])
     kept["turn"] = np.isfinite(found.speed)
     for row in less:

@@ -2,7 +2,6 @@
 paper's claim that the offset alone determines the circle."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,12 +11,11 @@ from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import dynamics_of
-from rr_opt.verify.evaluate import Found, Mask, evaluate, kept_limits, within
+from rr_opt.verify.evaluate import Found, Mask, evaluate, evaluated, within
 from rr_opt.verify.grid import grid_of, reach
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.sweep import climbed, tops
 
-_SLACK = 1e-8
 _TOLERANCE = 1e-6
 
 
@@ -62,7 +60,7 @@ def turn_map(problem: Problem, counts: tuple[int, int, int]) -> TurnMap:
     period = np.geomspace(*ends, counts[1]) if ends[0] < ends[1] else np.array(ends[:1])
     offset = np.linspace(0.0, open_offsets(problem), counts[2])
     alpha, phi0, T = np.meshgrid(amplitude, offset, period, indexing="ij")
-    inside = _every(within(problem, alpha, phi0))
+    inside = np.logical_and.reduce(list(within(problem, alpha, phi0).values()))
     seen = speeds(
         problem,
         np.where(inside, alpha, 0.0)[..., :1],
@@ -71,16 +69,15 @@ def turn_map(problem: Problem, counts: tuple[int, int, int]) -> TurnMap:
         None,
         _TOLERANCE,
     )
-    gaits = np.array([alpha, T, phi0])
-    keeps = seen.converged & (alpha > 0) & _every(kept_limits(problem, gaits, seen, _SLACK))
-    parts = (np.where(inside, part, np.nan) for part in (seen.speed, seen.turn, seen.peak_torque))
-    speed, heading, torque = (np.swapaxes(part, 1, 2) for part in parts)
-    keeps, alike = np.swapaxes(keeps, 1, 2), dynamics_of(problem.robot).mirrored
+    parts = (seen.speed, seen.peak_torque, seen.turn)
+    made = [np.where(inside, part, np.nan) for part in parts]
+    gaits = np.array([alpha, T, phi0, np.full_like(T, np.nan), *made])
+    posed = replace(problem, turn=None, inertia_ratio=None)
+    feasible = evaluated(posed, gaits.reshape(len(gaits), -1)).feasible.reshape(alpha.shape)
+    keeps = np.swapaxes(seen.converged & (alpha > 0) & feasible, 1, 2)
+    speed, torque, heading = (np.swapaxes(part, 1, 2) for part in made)
+    alike = dynamics_of(problem.robot).mirrored
     return TurnMap(amplitude, period, offset, speed, heading, torque, keeps, alike)
-
-
-def _every(kept: Mapping[str, Mask]) -> Mask:
-    return np.logical_and.reduce(list(kept.values()))
 
 
 _COUNTS = ((8, 8, 33), (11, 11, 46))
