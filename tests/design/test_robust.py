@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import rr_opt as rr
+from rr_opt.design.robust import robust_gait
+from rr_opt.design.sines import refine_sine
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, Spreads
 from rr_opt.model.robot import Platform, Robot
@@ -76,6 +78,14 @@ def test_no_gait_next_to_it_is_better(found):
 def test_a_robot_that_is_known_has_the_nominal_optimum():
     sure = rr.maximize_speed(replace(PROBLEM, robust=Spreads(kappa=1e-6)))
     assert sure.robust.speed == pytest.approx(sure.speed, rel=1e-4)
+
+
+def test_a_gait_that_is_lost_when_refined_is_no_answer(found, monkeypatch):
+    def lost(setting, candidate):
+        return replace(refine_sine(setting, candidate), success=False)
+
+    monkeypatch.setattr("rr_opt.design.robust.refine_sine", lost)
+    assert robust_gait(found.optimum, SPREADS) is None
 
 
 def test_what_is_not_known_is_refused():

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rr_opt.array import Array
+from rr_opt.design.candidate import Finds, distinct
 from rr_opt.design.decisions import Setting, decisions, robot_of, scanned, settings_of
 from rr_opt.design.landscape import Cycles, Landscape
 from rr_opt.design.maximize_speed import Optimum
@@ -112,7 +113,7 @@ def robust_gait(optimum: Optimum, spreads: Spreads) -> RobustGait | None:
     the robots can perform."""
     problem: Problem = optimum.problem
     box, way = decisions(problem), WAYS[problem.direction]
-    best = None
+    pairs = []
     for known in settings_of(problem, box):
         setting = replace(known, landscape=_Spread(known, spreads))
         inside = scanned(setting, box)
@@ -122,13 +123,10 @@ def robust_gait(optimum: Optimum, spreads: Spreads) -> RobustGait | None:
             for one in optimum.optima
         ]
         for start in starts:
-            found = solve_sine(setting, way, np.array(start))
-            if found.feasible and found.success and (best is None or found.rank < best[1].rank):
-                best = setting, found
-    if best is None:
-        return None
-    setting, found = best[0], refine_sine(*best)
-    if not isinstance(found.gait, SineGait) or not found.speed:
-        return None
-    robot = robot_of(setting, found.share)
-    return RobustGait(found.gait, found.speed, steady_cycle(robot, found.gait).speed, robot)
+            pairs.append((setting, solve_sine(setting, way, np.array(start))))
+    for setting, coarse in distinct(Finds(pairs).good):
+        found = refine_sine(setting, coarse)
+        gait, robot = found.gait, robot_of(setting, found.share)
+        if isinstance(gait, SineGait) and found.feasible and found.success and found.speed:
+            return RobustGait(gait, found.speed, steady_cycle(robot, gait).speed, robot)
+    return None
