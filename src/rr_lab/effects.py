@@ -197,9 +197,10 @@ def _slip(rig: Rig, values: Values) -> None:
 
 
 def _patch(rig: Rig, values: Values) -> None:
-    """The drag of each wheel times `multiplier` within a circle or strip, or beyond an edge."""
+    """The drag of each wheel times `multiplier` within a circle or strip, or beyond an edge. A
+    robot file gives them a radius of 0."""
     within: Circle | Edge | Strip
-    if "radius" in values:
+    if values.get("radius"):
         within = Circle(values["x"], values["y"], values["radius"])
     else:
         within = Edge(values["edge_x"], values["edge_y"], values["normal"])
@@ -308,6 +309,8 @@ def _backlash(rig: Rig, values: Values) -> None:
     rig.hinge_dry += values.get("joint_friction", 0.0)
     if "gear_stiffness" in values:
         rig.gear = values["gear_stiffness"]
+    elif compliance := values.get("compliance"):
+        rig.gear = 1 / compliance
 
 
 def _frictional(setting: Setting, values: Values) -> Values:
@@ -416,12 +419,14 @@ def effect_named(key: str) -> HiddenEffect:
 def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
     """The robot with the effects, in the order given; those in its own `physics` come first.
 
-    Raises InputError for an effect or a parameter that is unknown, or required and missing.
+    Raises InputError for an effect or a parameter that is unknown, or required and missing. Unknown
+    ones of 0 pass: a robot file gives all of the catalogue, 0 where they do nothing.
     """
     rig = Rig(robot)
     for use in (*robot.physics, *effects):
         effect = effect_named(use.name)
-        if unknown := sorted(set(use.values) - set(effect.accepted)):
+        given = {name for name, value in use.values.items() if value}
+        if unknown := sorted(given - set(effect.accepted)):
             raise InputError(
                 f"The effect {use.name} has no parameter {', '.join(unknown)}. Expected: "
                 f"{', '.join(sorted(effect.accepted))}. Correct the name."
