@@ -417,14 +417,14 @@ def effect_named(key: str) -> HiddenEffect:
 
 
 def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
-    """The robot with the effects, in the order given; those in its own `physics` come first.
+    """The robot with the effects and those in its own `physics`, in the order of the table.
 
     Raises InputError for an effect or a parameter that is unknown, or required and missing. Unknown
     ones of 0 pass: a robot file gives all of the catalogue, 0 where they do nothing.
     """
     rig = Rig(robot)
-    for use in (*robot.physics, *effects):
-        effect = effect_named(use.name)
+    uses = [(effect_named(use.name), use) for use in (*robot.physics, *effects)]
+    for effect, use in sorted(uses, key=lambda one: EVERY.index(one[0])):
         given = {name for name, value in use.values.items() if value}
         if unknown := sorted(given - set(effect.accepted)):
             raise InputError(
