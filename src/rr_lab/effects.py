@@ -73,7 +73,7 @@ class Setting:
     """The context that drawn values may depend on.
 
     gaits   of the runs that will be recorded
-    passed  a place (m) in the middle of one of the runs, drawn anew at each call
+    passed  a place (m) in the middle of one of the gauged runs, drawn anew at each call
     """
 
     rng: np.random.Generator

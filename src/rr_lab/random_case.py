@@ -26,15 +26,19 @@ from rr_opt.model.parameters import Uncertainty, default_uncertainty, parameters
 from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
 from rr_opt.outcome import InputError
 
+GAUGED = 3
+"""Runs used to set the strength."""
+
 
 def draw_effect(rng: np.random.Generator, effect: HiddenEffect, case: Case) -> EffectUse:
     """An effect around its typical size for a case that does not have it yet.
 
-    `effect_size.scaled_to` corrects its strength later.
+    `effect_size.scaled_to` corrects its strength later, on the runs where a place is drawn.
     """
+    plans = case.plans[:GAUGED]
 
     def passed() -> tuple[float, float]:
-        plan = case.plans[int(rng.integers(len(case.plans)))]
+        plan = plans[int(rng.integers(len(plans)))]
         path = motion_of(case, plan, COARSE).one
         at = int(rng.uniform(0.3, 0.7) * len(path))
         return float(path[at, 0]), float(path[at, 1])
@@ -172,9 +176,6 @@ SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
 
 SIZES = 3.0, 60.0
 """Range of the effect size, sigma, drawn log-uniformly."""
-
-GAUGED = 3
-"""Runs used to set the strength."""
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.case import play
+from rr_lab import random_case as module
+from rr_lab.case import play, stream
 from rr_lab.effects import EVERY, effect_named
 from rr_lab.files import answer, seal_of, sealed_text
-from rr_lab.random_case import random_case
+from rr_lab.random_case import GAUGED, draw_effect, random_case
+from rr_lab.run import Motion
 from rr_opt.outcome import InputError
 
 
@@ -129,3 +131,17 @@ def test_a_seal_gives_nothing_away():
     one, other = sealed_text(case), sealed_text(case)
     assert seal_of(one) != seal_of(other)
     assert seal_of(one) == seal_of(one)
+
+
+@pytest.mark.parametrize("key", ["floor_patch/disc", "floor_patch/edge", "tether"])
+def test_places_are_on_runs_that_set_the_strength(key, monkeypatch):
+    case, driven = drawn(3, "null"), []
+
+    def still(_, plan, *args):
+        driven.append(plan)
+        return Motion(*np.zeros((3, 10, 3)))
+
+    monkeypatch.setattr(module, "motion_of", still)
+    for seed in range(20):
+        draw_effect(stream(seed), effect_named(key), case)
+    assert set(driven) == set(case.plans[:GAUGED])
