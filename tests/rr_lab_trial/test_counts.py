@@ -91,6 +91,14 @@ def test_each_is_defined_in_a_sentence():
         assert one.definition.endswith(".")
 
 
+@pytest.mark.parametrize(("name", "size"), [("faint", 1e-6), ("medium", 10.0), ("strong", 70.0)])
+def test_a_strength_is_defined_by_the_sizes_it_stands_for(name, size):
+    words = {"faint": "less than 5", "medium": "5 to 15", "strong": "at least 15"}
+    assert truth("single", DRAG, size=size).strength == name
+    (one,) = (one for one in COUNTS if one.name == f"single_{name}")
+    assert f"an effect of {words[name]} sigma" in one.definition
+
+
 @pytest.mark.parametrize(("count", "total"), [(0, 20), (3, 20), (20, 20), (1, 7)])
 def test_the_interval_is_clopper_and_pearson(count, total):
     """Its ends are the chances at which so many, or so few, come once in forty times."""

@@ -79,7 +79,7 @@ class Truth:
 
     @property
     def strength(self) -> str:
-        """Of a single effect, by its size before a re-fit; else empty."""
+        """Of a single effect, by its size before a re-fit, however small or large; else empty."""
         if self.kind != "single":
             return ""
         size = self.size[self.hidden[0]]

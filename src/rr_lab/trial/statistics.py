@@ -286,8 +286,13 @@ _PREDICATES: dict[str, tuple[Predicate, Predicate]] = {
 
 TEXTS = tomllib.loads(Path(__file__).with_name("texts.toml").read_text(encoding="utf-8"))
 
-_NUMBERS = {"floor": f"{FLOOR:g}", "sure": f"{SURE:g}"} | {
-    name: f"{low:g} to {high:g}" for name, (low, high) in STRENGTHS.items()
+_NUMBERS = {
+    "floor": f"{FLOOR:g}",
+    "sure": f"{SURE:g}",
+    # The size that was reached may lie outside the ranges of those that were drawn.
+    "faint": f"less than {STRENGTHS['medium'][0]:g}",
+    "medium": "{:g} to {:g}".format(*STRENGTHS["medium"]),
+    "strong": f"at least {STRENGTHS['medium'][1]:g}",
 }
 COUNTS = tuple(
     Count(name, text["title"], text["definition"].format(**_NUMBERS), *_PREDICATES[name])
