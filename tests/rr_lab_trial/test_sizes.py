@@ -143,6 +143,12 @@ def test_confusion():
     }
 
 
+def test_what_is_hidden_only_on_request_has_a_row():
+    found = confusion([single("wheel_inertia", said("missing_physics", DRAG))])
+    assert found.rows == ("wheel_inertia",)
+    assert found.columns == (DRAG, "wheel_inertia")
+
+
 @pytest.mark.parametrize(("normal", "held"), [(3.98, True), (-2.30, True), (-2.60, False)])
 def test_a_direction_is_the_same_a_turn_on_and_a_point_on_an_edge_is_not_counted(normal, held):
     true = {"floor_patch": {"multiplier": 2.0, "normal": -2.302, "edge_x": 0.2, "edge_y": 1.0}}

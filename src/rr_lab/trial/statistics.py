@@ -362,10 +362,10 @@ def confusion(cases: Sequence[Case]) -> Confusion:
         (_WORDS.get(case.truth.kind) or " + ".join(case.truth.hidden), _said(case)) for case in kept
     )
     order = (NOTHING, VALUE, *SINGLES, NO_NAME)
-    rows = tuple(name for name in order if any(row == name for row, _ in counts))
-    said = {column for _, column in counts}
-    others = sorted(said - {*order, SEVERAL, NONE})
+    hidden, said = {row for row, _ in counts}, {column for _, column in counts}
+    others = sorted((hidden | said) - {*order, SEVERAL, NONE})
     names = (*order, *others, SEVERAL, NONE)
+    rows = tuple(n for n in names if n in hidden)
     return Confusion(rows, tuple(n for n in names if n in said or n in rows), dict(counts))
 
 
