@@ -16,7 +16,8 @@ from rr_lab import mujoco
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effects import rig_with
 from rr_lab.rig import Rig
-from rr_lab.run import Conditions, Motion, captured
+from rr_lab.run import Conditions, Motion, asked_angle, captured
+from rr_opt.array import Array
 from rr_opt.model.experiment import Experiment, Noise, Recording, Run, Start, Uncertainty, Use
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.robot import EffectUse, Robot
@@ -157,6 +158,22 @@ def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool
         conditions, torque=torque, rate=clock * conditions.rate, seconds=conditions.seconds / clock
     )
     return driven(case.engine, case.rig, plan.gait, conditions, step)
+
+
+def servo_angles(case: Case, plan: Plan, when: Array) -> tuple[Array, Array]:
+    """The command and the angle of the servo's shaft, rad, at command times `when`, s, of a run."""
+    rig, gait, conditions = case.rig, plan.gait, plan.conditions
+    begin, first = conditions.begin(gait), float(when.min())
+    if rig.motor is None:
+        t = np.arange(min(begin, first) - mujoco.SETTLE, when.max() + 0.01, mujoco.STEP)
+        made = asked_angle(rig, gait, begin, t)
+    else:
+        # The load deflects a soft loop. Without play, the joint turns as the shaft does.
+        shaft = replace(rig, clock=first, play=0.0, gear=None)
+        longer = replace(conditions, seconds=float(np.ptp(when)) + 1 / conditions.rate)
+        seen = captured(driven(case.engine, shaft, gait, longer), "", EXACT, stream(0))
+        t, made = first + seen.t, seen.values["phi"]
+    return gait.angle(np.maximum(when, begin)), np.interp(when, t, made)
 
 
 def recorded(

@@ -6,12 +6,13 @@ import secrets
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import PurePath
 from typing import Any, Literal
 
 import numpy as np
 
-from rr_lab.case import Case, Plan, motion_of, recorded, stream
+from rr_lab.case import Case, Plan, motion_of, recorded, servo_angles, stream
 from rr_lab.effects import effect_named
 from rr_lab.formats import ServoClock, c3d_bytes, log_text, marker_data, places, vicon_text
 from rr_opt.model.experiment import Recording
@@ -123,8 +124,7 @@ def folder_of(
         progress(f"recording {n + 1} of {len(case.plans)}")
         yield delivery.file(plan), _recorded(case, plan, n, delivery)
         if delivery.servo_log:
-            rig = case.rig
-            log = log_text(rig, plan.gait, plan.conditions, delivery.clock)
+            log = log_text(partial(servo_angles, case, plan), plan.seconds, delivery.clock)
             yield delivery.log(plan), log.encode()
     # Written last, so that a folder with this file is complete.
     yield "experiment.yaml", experiment_text(case, delivery).encode()

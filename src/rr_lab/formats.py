@@ -1,7 +1,7 @@
 """Markers on the robot as seen by a motion capture system, and the file formats."""
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,12 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_lab.mujoco import servo_angles
-from rr_lab.rig import Rig
-from rr_lab.run import Conditions, Motion
+from rr_lab.run import Motion
 from rr_opt.array import Array
 from rr_opt.model.experiment import CountScale
-from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
@@ -158,13 +155,16 @@ def drawn_clock(rng: np.random.Generator) -> ServoClock:
     return ServoClock(float(rng.uniform(-0.5, 0.5)), float(rng.uniform(-1e-4, 1e-4)))
 
 
-def log_text(rig: Rig, gait: Gait, conditions: Conditions, clock: ServoClock) -> str:
+def log_text(
+    angles: Callable[[Array], tuple[Array, Array]], seconds: float, clock: ServoClock
+) -> str:
     """CSV `t,goal,present` of one run, from the log's t = 0.
 
-    `present` is the angle of the servo's own shaft: backlash behind it is not visible.
+    angles  command times, s -> the command and the angle of the servo's own shaft, rad: backlash
+            behind it is not visible
     """
-    own = np.arange(round(conditions.seconds * RATE) + 1) / RATE
-    goal, present = servo_angles(rig, gait, conditions, own / (1 + clock.drift) + clock.offset)
+    own = np.arange(round(seconds * RATE) + 1) / RATE
+    goal, present = angles(own / (1 + clock.drift) + clock.offset)
     scale = CountScale()
     counts = (np.rint(scale.zero + angle / scale.each).astype(int) for angle in (goal, present))
     rows = (f"{t:.3f},{one},{two}" for t, one, two in zip(own, *counts, strict=True))

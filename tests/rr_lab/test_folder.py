@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.case import play
+from rr_lab.case import play, recorded
 from rr_lab.files import Delivery, folder_of
 from rr_lab.formats import ServoClock
 from rr_lab.random_case import random_case
 from rr_opt.model.experiment import Noise
+from rr_opt.model.robot import EffectUse
 from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.readers import read_file
 
@@ -64,3 +65,14 @@ def test_servo_log_has_its_own_clock(case, tmp_path):
     command = np.maximum(log.t / (1 + clock.drift) + clock.offset, begin)
     # Half a count of 5.1 mrad.
     np.testing.assert_allclose(log.goal_angle, gait.angle(command), atol=2.6e-3)
+
+
+@pytest.mark.parametrize(("name", "values"), [("first_order", {}), ("p_loop", {"zeta": 0.8})])
+def test_servo_log_shows_the_lag(case, tmp_path, name, values):
+    lag = EffectUse(f"servo_lag/{name}", {"tau": 0.06, **values})
+    lagging = replace(case, effects=(lag,), engine="planar")
+    written(lagging, tmp_path, Delivery(servo_log=True))
+    log, seen = read_file(tmp_path / "run01-servo.csv"), recorded(replace(lagging, missing=0.0), 0)
+    present = np.interp(seen.t, log.t, log.present_angle)
+    np.testing.assert_allclose(present, seen.values["phi"], atol=3.5e-3)
+    assert np.abs(log.present_angle - log.goal_angle).max() > 0.05

@@ -76,13 +76,6 @@ def drive(rig: Rig, gait: Gait, conditions: Conditions, step: float = STEP) -> M
     return _run(plant, conditions, angle, t - begin, Course(let_go, before, every, count))
 
 
-def servo_angles(rig: Rig, gait: Gait, conditions: Conditions, when: Array) -> tuple[Array, Array]:
-    """The command and the angle of the servo's shaft, rad, at command times `when`, s."""
-    begin = conditions.begin(gait)
-    t = np.arange(min(begin, when.min()) - SETTLE, when.max() + 2 * STEP, STEP)
-    return gait.angle(np.maximum(when, begin)), np.interp(when, t, asked_angle(rig, gait, begin, t))
-
-
 def _run(
     plant: Plant, conditions: Conditions, angle: Array, t: NDArray[Any], course: Course
 ) -> Motion:
