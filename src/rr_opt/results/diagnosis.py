@@ -228,7 +228,7 @@ def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
             yield doc.Fact(f"explained by {name}", tables.share_text(finding), beyond)
         for name, each in list(finding.parameters.items())[:2]:
             value, _, interval = tables.value_text(each).partition(" [")
-            yield doc.Fact(name.replace("_", " "), value, f"95 %: {interval.rstrip(']')}")
+            yield doc.Fact(words_of(name), value, f"95 %: {interval.rstrip(']')}")
     if isinstance(one.loss, Loss):
         lost = share_lost(one.loss)
         yield doc.Fact("speed lost", lost, "by driving the nominal model's best gait")

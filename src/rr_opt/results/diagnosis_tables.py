@@ -223,8 +223,10 @@ def _candidate(one: Tried, tried: Sequence[Tried]) -> str:
 
 
 def parameters_table(found: Diagnosis, experiment: Experiment) -> doc.Table:
-    """The robot's own parameters: nominal, and as estimated."""
-    nominal = parameters_of(experiment.robot)
+    """The robot's own parameters, values of its effects included: nominal, and as estimated."""
+    robot = experiment.robot
+    own = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
+    nominal = parameters_of(robot) | own
     moved = {
         name
         for finding in found.findings
@@ -253,7 +255,9 @@ def parameters_table(found: Diagnosis, experiment: Experiment) -> doc.Table:
     if moved:
         changed = doc.Badge("off nominal", "warn")
         columns["Verdict"] = lambda each: changed if each[0] in moved else ""
-    return doc.table_of([one for one in found.parameters.items() if "." not in one[0]], columns)
+    # The others are values of effects that the answer adds.
+    shown = [one for one in found.parameters.items() if one[0] in nominal or "." not in one[0]]
+    return doc.table_of(shown, columns)
 
 
 def misfit_table(found: Diagnosis) -> doc.Table:

@@ -298,7 +298,7 @@ def tried(selection: Selection, accepted: Candidate | None) -> tuple[Tried, ...]
             # Of one that was not simulated over whole runs, that in segments, with process noise.
             one.excess if "simulated" in one.__dict__ else one.fit.excess,
             -2 * one.elpd,
-            {k: v for k, v in one.fit.values.items() if "." in k},
+            {k: v for k, v in one.fit.values.items() if k.partition(".")[0] in one.effects},
             accepted is not None and one.choices == accepted.choices,
         )
         for one in every

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
-from rr_opt.results.diagnosis_tables import candidates_table, stage_text, total
-from rr_opt.sysid.diagnosis import Mismatch, Tried
+from rr_opt.documents.document import Badge
+from rr_opt.results.diagnosis_tables import candidates_table, parameters_table, stage_text, total
+from rr_opt.sysid.diagnosis import Finding, Mismatch, Tried
+from tests.robots import DRY
 
 
 def column(table, name):
@@ -36,3 +38,20 @@ def test_where_there_is_no_excess_no_share_of_it_is_given(missing):
     stage = replace(missing.found.stages[0], size=0.03, p_value=0.4)
     found = replace(missing.found, mismatch=Mismatch(0.03, 0.4))
     assert stage_text(stage, found) == "p = 0.40"
+
+
+def test_values_of_effects_that_the_robot_has_are_parameters_of_it(missing, monkeypatch):
+    added = parameters_table(missing.found, missing.experiment)
+    assert column(added, "Parameter") == ["m1", "kappa1"]
+    name = "coulomb_friction.force1"
+    wrong = Finding(name, 1.0, {name: missing.found.parameters[name]}, 1.0)
+    found = replace(missing.found, verdict="parameters", findings=(wrong,))
+    experiment = replace(missing.experiment, robot=DRY)
+    rows = {row[1]: list(row[2:]) for row in parameters_table(found, experiment).rows}
+    off = Badge("off nominal", "warn")
+    assert rows["force1 of Coulomb friction"] == ["2.0 mN", "15.2 mN", "14.1 to 16.3 mN", off]
+    assert rows["force2 of Coulomb friction"] == ["2.00 mN", "9.80 mN", "8.90 to 10.70 mN", ""]
+
+    monkeypatch.setattr(type(missing), "loss", None)
+    told = replace(missing, found=found, experiment=experiment).document()
+    assert "force1 of Coulomb friction" in str(told.sections[1])
