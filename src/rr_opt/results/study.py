@@ -296,7 +296,7 @@ def _facts(result: SolvedStudy) -> Iterator[doc.Fact]:
     gait = f"{with_unit(optimum.amplitude, 'rad')}, {with_unit(optimum.period, 's')}"
     yield doc.Fact("fastest", speed_text(optimum.speed), result.inputs_text(best))
     yield doc.Fact("", gait, f"limited by {', '.join(held_words(optimum.held))}")
-    least = int(np.nanargmin(result.values("cost_of_transport")))
+    least = int(np.nanargmin(result.values("energy_per_metre")))
     cheap = rows[least].optimum
     if cheap:
         text = f"{number(cheap.energy_per_metre)} J/m, {1e3 * abs(cheap.speed):.1f} mm/s"
