@@ -113,10 +113,11 @@ class FastestShapes(Result):
         passed = sum(check.passed for _, check in results)
         every = doc.checks((check.passed, f"{name}: {check.sentence}") for name, check in results)
         count = f"{passed} of {len(results)} passed: replay, limits, and a sweep of all sines."
-        title = "Waveforms"
-        if len(self.solved) > 1:
-            gain = self.gain(self.solved[-1]) or 0.0
-            title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
+        title, solved = "Waveforms", self.solved
+        if len(solved) > 1 and solved[0] is self.answers[0]:
+            gain, best = self.gain(solved[-1]) or 0.0, family(solved[-1])
+            what = "A free gait" if best == "free" else f"A gait of {best}"
+            title = f"{what} is {100 * gain:.0f} % faster than the best sine"
         sections = (
             doc.gallery(figures),
             doc.section("Families", _families(self)),

@@ -170,8 +170,8 @@ def draw_shapes(compared: FastestShapes) -> dict[str, str]:
         line = {"color": colour, "alpha": alpha, "ls": (0, (5, 2)) if first else "-"}
         angle.plot(phase, gait.angle(phase * gait.period), **line)
         rate.plot(phase, gait.rate(phase * gait.period), **line)
-        size, gain = 1e3 * abs(speed), compared.gain(one) or 0.0
-        text = f"{size:.0f} mm/s" + ("" if first else f"  {100 * gain:+.0f} %")
+        size, gain = 1e3 * abs(speed), compared.gain(one)
+        text = f"{size:.0f} mm/s" + (f"  {100 * gain:+.0f} %" if gain else "")
         bars.barh(place, size, height=0.62, color=colour, alpha=alpha)
         bars.text(size + 0.02 * top, place, text, va="center", color=style.INK)
     limit = compared.answers[0].problem.limits.rate
