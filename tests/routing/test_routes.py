@@ -84,6 +84,14 @@ def test_a_wrong_file(file, text, expected):
         rr.load_routes(file)
 
 
+def test_no_route_writes_over_the_study(file):
+    routes = file.with_name("routes.yaml")
+    routes.write_text("routes: [study.yaml]")
+    file.write_text(file.with_name("ahead.yaml").read_text())
+    with pytest.raises(rr.InputError, match="Read a route named study"):
+        rr.load_routes(routes)
+
+
 def test_a_study_of_another_kind_is_refused(file):
     with pytest.raises(rr.InputError, match=r"rr\.routes"):
         rr.study(file)

@@ -172,6 +172,12 @@ def routes_from(document: FileData, file: Path) -> tuple[RouteStudy | None, list
     if twice:
         message = f"Read {listed(twice)} twice. Expected files of different names. Rename one."
         issues.append(document.error(("routes",), message))
+    if any(one.name == "study" for one in routes):
+        message = (
+            "Read a route named study, whose result would replace study.json. Expected another "
+            "name. Rename its file."
+        )
+        issues.append(document.error(("routes",), message))
     if model is None or has_errors(issues):
         return None, issues
     whole = "".join([fingerprint([file]), *(route.sha256 for route in routes)])
