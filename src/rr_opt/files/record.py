@@ -42,14 +42,18 @@ def plain(value: Any) -> Any:
 
 def robot_record(robot: Robot) -> dict[str, Any]:
     """The robot in SI under the keys of a robot file; infinity means no limit."""
-    return {
-        "name": robot.name,
+    sections = {
         "platform1": dataclasses.asdict(robot.platform1),
         "platform2": dataclasses.asdict(robot.platform2),
         "h": robot.h,
         "servo": dataclasses.asdict(robot.servo),
+    }
+    physics = {use.name: use.values for use in robot.physics}
+    return {
+        "name": robot.name,
+        **sections,
         "physics": [{"name": use.name, **use.values} for use in robot.physics],
-        "provenance": _nested(dict(robot.provenance)),
+        "provenance": _nested(robot.provenance, {**sections, "physics": physics}),
     }
 
 
@@ -78,14 +82,20 @@ def yaml_text(content: Mapping[str, Any], title: str) -> str:
     return f"# {title}\n{text}"
 
 
-def _nested(flat: dict[str, str]) -> dict[str, Any]:
-    """`{"servo.rate_limit": text}` as nested mappings."""
+def _nested(flat: Mapping[str, str], robot: Mapping[str, Any]) -> dict[str, Any]:
+    """`{"servo.rate_limit": text}` as nested mappings.
+
+    A text on a whole section goes to each of its keys if one of them has its own.
+    """
     nested: dict[str, Any] = {}
     for path, text in flat.items():
         *sections, key = path.split(".")
-        place = nested
+        place, values = nested, robot
         for section in sections:
-            place = place.setdefault(section, {})
+            values = values.get(section, {}) if isinstance(values, Mapping) else {}
+            if isinstance(whole := place.setdefault(section, {}), str):
+                place[section] = dict.fromkeys(values, whole)
+            place = place[section]
         place[key] = text
     return nested
 

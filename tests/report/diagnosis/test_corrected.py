@@ -9,6 +9,7 @@ from rr_opt.effects import OF_ROBOTS
 from rr_opt.files.lint import lint_file
 from rr_opt.files.record import robot_yaml
 from rr_opt.files.robot_file import read_robot
+from rr_opt.model.robot import EffectUse
 from rr_opt.results.loss import corrected_robot
 
 
@@ -72,3 +73,17 @@ def test_a_value_stays_within_its_bounds(missing):
     found = replace(missing.found, values={"lateral_slip.mu": 10.000004})
     (use,) = corrected_robot(missing.experiment, found).physics
     assert use.values["mu"] == OF_ROBOTS["lateral_slip"].parameters[1].bounds[1]
+
+
+@pytest.mark.parametrize("section", ["physics", "physics.lateral_slip"])
+def test_the_origin_of_a_section_stays_that_of_what_was_not_fitted(missing, tmp_path, section):
+    slip = EffectUse("lateral_slip", {"mu": 0.5})
+    said = {"platform1": "measured: CAD", section: "assumed: a guess"}
+    robot = replace(missing.experiment.robot, provenance=said, physics=(slip,))
+    corrected = corrected_robot(replace(missing.experiment, robot=robot), missing.found)
+    origins = read_robot(written(corrected, tmp_path)).provenance
+    assert origins["platform1.kappa"].startswith("fitted: ")
+    assert origins["physics.coulomb_friction.force1"].startswith("fitted: ")
+    assert origins["platform1.c"] == "measured: CAD"
+    slips = [text for path, text in origins.items() if path.startswith("physics.lateral_slip")]
+    assert slips == ["assumed: a guess"]
