@@ -19,6 +19,7 @@ from rr_opt.recordings.cleaning import LARGEST
 from rr_opt.recordings.copies import Rows, copied, machine_rows_of
 from rr_opt.recordings.readers.plain_csv import converted
 from rr_opt.recordings.readers.text import decode, find_header, read_table
+from rr_opt.recordings.time_axis import LATEST, longest_rising
 
 _WILD = 8.0
 """Times the usual distance from the neighbours' median beyond which a sample is wild."""
@@ -66,10 +67,13 @@ def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue
 def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
     machine, table = plan.experiment.machine, read_columns(one.file)
     t = _channel(one, table, Channel("t", "s", "the time"))
-    keep = np.append(True, np.diff(np.maximum.accumulate(t)) > 0) & np.isfinite(t)
+    timed = np.flatnonzero(np.abs(t) < LATEST)
+    rising = timed[longest_rising(t[timed])]
+    keep = rising[np.diff(t[rising], prepend=-np.inf) > 0]
     doubts = []
-    if not keep.all():
-        doubts.append(f"Rows dropped because their times repeat or run backwards: {(~keep).sum()}.")
+    if dropped := t.size - keep.size:
+        why = "they have no time, or one that repeats or runs backwards"
+        doubts.append(f"Rows dropped because {why}: {dropped}.")
     data = {c.name: _channel(one, table, c)[keep] for c in machine.channels}
     t = t[keep]
     if t.size < _FEWEST:

@@ -29,7 +29,7 @@ def in_steps(t: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(np.minimum(np.diff(t) / time_step(t), _FARTHEST))])
 
 
-_LATEST = 1e12
+LATEST = 1e12
 """Larger times belong to no clock, in any unit, s."""
 _TOGETHER = 1e-9
 """Times closer than this are the same for any clock, s."""
@@ -60,13 +60,13 @@ def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) 
     """
     doubts: list[Notice] = []
     lines = np.asarray(lines)
-    timed = np.abs(t) < _LATEST
+    timed = np.abs(t) < LATEST
     rows, lost = np.flatnonzero(timed), lines[~timed]
     if len(lost):
         doubts.append(notice("time.none", rows=_rows(lost)))
     moved = np.zeros(len(rows), bool)
     if (np.diff(t[rows]) < 0).any():
-        moved = ~_longest_rising(t[rows])
+        moved = ~longest_rising(t[rows])
         doubts.append(notice("time.order", rows=_rows(lines[rows[moved]])))
         back = np.flatnonzero(np.diff(t[rows]) < 0)
         if len(back) < _RESTARTS and moved.sum() > _RESTARTS * len(back):
@@ -98,7 +98,7 @@ def _rows(lines: NDArray[np.int64]) -> str:
     return f"{len(lines)} rows, the first in line {min(lines)}"
 
 
-def _longest_rising(t: Array) -> NDArray[np.bool_]:
+def longest_rising(t: Array) -> NDArray[np.bool_]:
     """Members of a longest non-decreasing sequence; the others came out of order."""
     tails: list[float] = []
     ends: list[int] = []
@@ -109,7 +109,7 @@ def _longest_rising(t: Array) -> NDArray[np.bool_]:
         tails[place : place + 1] = [time]
         ends[place : place + 1] = [at]
     member = np.zeros(len(t), bool)
-    at = ends[-1]
+    at = ends[-1] if ends else -1
     while at >= 0:
         member[at] = True
         at = before[at]
