@@ -213,8 +213,8 @@ def _in_files(folder: Path) -> list[Issue]:
     return issues
 
 
-def checked(experiment: Experiment) -> tuple[dict[str, str], list[str]]:
-    """Why recordings cannot be diagnosed, in sentences: by name, each uninformative recording; and
+def checked(experiment: Experiment) -> tuple[dict[int, str], list[str]]:
+    """Why recordings cannot be diagnosed, in sentences: by index, each uninformative recording; and
     contradictions of the experiment file, in units, signs, clocks, the gait, or no recording left
     to fit."""
     left_out = dict(_left_out(experiment))
@@ -224,7 +224,7 @@ def checked(experiment: Experiment) -> tuple[dict[str, str], list[str]]:
         for one in notices_of(run)
         if one.level == "error"
     ]
-    kept = [run for run in experiment.runs if run.name not in left_out]
+    kept = [run for k, run in enumerate(experiment.runs) if k not in left_out]
     half = [any(one.code == "command.half" for one in notices_of(run)) for run in kept]
     if not wrong and len(half) > 1 and all(half):
         wrong.append(notice("command.signs"))
@@ -261,19 +261,19 @@ def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
         place = f"{experiment.name}/{EXPERIMENT}" if experiment.sha256 else experiment.name
         lines = (*left_out.values(), *wrong)
         raise InputError("\n".join(f"{place}: {line}" for line in lines))
-    runs = tuple(run for run in experiment.runs if run.name not in left_out)
+    runs = tuple(run for k, run in enumerate(experiment.runs) if k not in left_out)
     return replace(experiment, runs=runs), tuple(left_out.values())
 
 
-def _left_out(experiment: Experiment) -> Iterator[tuple[str, str]]:
-    """Names, and why they are left out. What is to be fitted goes before what is held out."""
+def _left_out(experiment: Experiment) -> Iterator[tuple[int, str]]:
+    """Indices, and why they are left out. What is to be fitted goes before what is held out."""
     seen: list[tuple[str, Rows]] = []
-    for run in sorted(experiment.runs, key=lambda one: one.use != "fit"):
+    for k, run in sorted(enumerate(experiment.runs), key=lambda one: one[1].use != "fit"):
         rows = rows_of(run.recording)
         why = next((one for one in notices_of(run) if one.kind == "useless"), None)
         original = copied(rows, seen)
         if why is None and original is not None:
             why = notice("useless.copy", other=original)
         if why is not None:
-            yield run.name, f"{run.name}: {why} It is left out."
+            yield k, f"{run.name}: {why} It is left out."
         seen.append((run.name, rows))

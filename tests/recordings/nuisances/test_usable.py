@@ -40,6 +40,13 @@ def test_a_copy_is_no_evidence():
         assert "two.csv: Read the same motion as one.csv" in left_out[0]
 
 
+def test_a_good_recording_is_not_left_out_with_another_of_its_name():
+    good, still = recording(), recording(change=lambda v: v.update(phi=0 * v["phi"]))
+    kept, left_out = usable(experiment((still, "fit"), (good, "fit")))
+    assert [np.ptp(run.recording.values["phi"]) > 0 for run in kept.runs] == [True]
+    assert len(left_out) == 1
+
+
 def placed(one, shift, angle):
     """The same recording in another frame."""
     way = (one.values["x"] + 1j * one.values["y"]) * np.exp(1j * angle) + shift
