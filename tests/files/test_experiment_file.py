@@ -250,5 +250,5 @@ def test_warnings(experiment, text, place, message):
 
 def test_named_files_are_found_in_a_file_that_is_wrong(experiment, tmp_path):
     path = experiment(RUNS + "- {file: 7}\n- {file: gone.csv}\n- x\n")
-    assert named_files(path) == [tmp_path / "one.csv", tmp_path / "two.csv"]
-    assert named_files(tmp_path / "nowhere") == []
+    assert named_files(path) == ([tmp_path / "one.csv", tmp_path / "two.csv"], {})
+    assert named_files(tmp_path / "nowhere") == ([], {})

@@ -1,12 +1,13 @@
 """From an experiment file to a checked plan of its runs; no recording is read yet."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from rr_opt.files.experiment_model import (
+    ColumnsModel,
     ExperimentModel,
     MarkersModel,
     RecordingModel,
@@ -164,20 +165,26 @@ def read_plan(path: str | Path) -> tuple[ExperimentPlan, list[Issue]]:
     return required(plan, issues), issues
 
 
-def named_files(path: Path) -> list[Path]:
-    """The existing recordings that an experiment file names, even if the file has errors."""
+def named_files(path: Path) -> tuple[list[Path], dict[str, Column]]:
+    """The existing recordings that an experiment file names, even if the file has errors, and their
+    columns. No recordings if those have errors: without them they cannot be read."""
     file = experiment_path(path)
     try:
-        entries: Any = read_document(file).data.get("recordings")
+        document = read_document(file)
     except InvalidFileError:
-        return []
-    names = [
-        entry.get("file")
-        for entry in (entries if isinstance(entries, list) else [])
-        if isinstance(entry, dict)
-    ]
+        return [], {}
+    whole = replace(document, data={"columns": {}, "recordings": [], **document.data})
+    columns, _ = validate(ColumnsModel, whole.section("columns"))
+    entries: Any = whole.data["recordings"]
+    if columns is None or not isinstance(entries, list):
+        return [], {}
+    names = [entry.get("file") for entry in entries if isinstance(entry, dict)]
     files = [file.parent / name for name in names if isinstance(name, str)]
-    return [one for one in files if not unreadable(one)]
+    return [one for one in files if not unreadable(one)], _stated(columns)
+
+
+def _stated(columns: Any) -> dict[str, Column]:
+    return {name: one for name, one in dict(columns).items() if one is not None}
 
 
 def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, list[Issue]]:
@@ -225,7 +232,7 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
         runs=runs,
         markers=markers,
         counts=model.servo_counts,
-        columns={name: one for name, one in dict(model.columns).items() if one is not None},
+        columns=_stated(model.columns),
         paths=(
             file,
             *paths,

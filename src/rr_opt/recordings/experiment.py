@@ -205,9 +205,10 @@ def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Ar
 def _in_files(folder: Path) -> list[Issue]:
     """Errors in the recordings of an experiment file that has errors itself."""
     issues: list[Issue] = []
-    for file in named_files(folder):
+    files, columns = named_files(folder)
+    for file in files:
         try:
-            read_file(file)
+            read_file(file, ReadOptions(columns=columns))
         except InputError as error:
             issues += error.issues if isinstance(error, InvalidFileError) else []
     return issues

@@ -140,3 +140,12 @@ def test_an_experiment_file_says_them(write, tmp_path):
     ):
         write(f"{HEAD}columns: {wrong}\n{runs}", "experiment.yaml")
         assert any(said in str(issue) for issue in experiment_of(tmp_path)[1]), wrong
+
+
+@pytest.mark.parametrize("columns", ["{psi: theta}", "{psy: theta}", "theta", ""])
+def test_a_mistake_elsewhere_adds_none_to_recordings_with_columns(write, tmp_path, columns):
+    write(plain(motion()).replace("psi", "theta"), "one.csv")
+    text = f"{HEAD}speed: 1\ncolumns: {columns}\nrecordings:\n- {{file: one.csv, {GAIT}}}\n"
+    write(text, "experiment.yaml")
+    _, issues = experiment_of(tmp_path)
+    assert {one.file.rpartition("/")[2] for one in issues} == {"experiment.yaml"}
