@@ -200,14 +200,9 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
     if "recordings" in document.data:
         runs, found = runs_from(document, file)
         issues += found
-    if isinstance(given := document.data.get("markers"), dict):
-        markers, found = layout_from(document.section("markers"))
+    if "markers" in document.data:
+        markers, found = layout_in(document)
         issues += found
-    elif "markers" in document.data:
-        message = (
-            f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
-        )
-        issues.append(document.error(("markers",), message))
     if model is not None and model.servo_counts.range == 0:
         message = "Read 0. Expected the angle that the counts span. Write for example `300 deg`."
         issues.append(document.error(("servo_counts", "range"), message))
@@ -241,6 +236,15 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
         ),
     )
     return plan, issues
+
+
+def layout_in(document: FileData) -> tuple[Layout | None, list[Issue]]:
+    """The places in a file that has a key `markers` (None if there are issues), and all issues."""
+    given = document.data["markers"]
+    if isinstance(given, dict):
+        return layout_from(document.section("markers"))
+    message = f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
+    return None, [document.error(("markers",), message)]
 
 
 def layout_from(document: FileData) -> tuple[Layout | None, list[Issue]]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.files.experiment_file import layout_from
+from rr_opt.files.experiment_file import layout_from, layout_in
 from rr_opt.files.issue import InvalidFileError, Issue, refuse, required
 from rr_opt.files.problem_file import kind_of
 from rr_opt.files.source import read_document
@@ -192,8 +192,8 @@ def read_layout(path: Path) -> Layout:
     """
     document = read_document(path)
     if "markers" in document.data:
-        document = document.section("markers")
-    elif "robot" in document.data and kind_of(document) == "experiment":
+        return required(*layout_in(document))
+    if "robot" in document.data and kind_of(document) == "experiment":
         message = "Read an experiment without `markers`. Expected the places of markers. Add them."
         raise InvalidFileError([document.error((), message)])
     return required(*layout_from(document))

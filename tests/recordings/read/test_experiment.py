@@ -14,6 +14,7 @@ from rr_opt.cli.main import app
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.gait import SineGait
 from rr_opt.recordings.experiment import experiment_of, read_experiment
+from rr_opt.recordings.inspection import read_layout
 from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.readers.netcdf import to_dataset, write_netcdf
 
@@ -191,6 +192,12 @@ def test_markers_that_are_not_known(write, tmp_path, change, message):
     write(change(text), "experiment.yaml")
     with pytest.raises(InvalidFileError, match=message):
         read_experiment(tmp_path)
+
+
+@pytest.mark.parametrize("given", ["", "none", "[A, B]"])
+def test_a_layout_without_places_is_refused(write, given):
+    with pytest.raises(InvalidFileError, match="Expected `platform1` and `platform2`"):
+        read_layout(write(f"markers: {given}\n", "layout.yaml"))
 
 
 def test_doubts_are_warnings(write, tmp_path):
