@@ -47,6 +47,16 @@ def test_a_good_recording_is_not_left_out_with_another_of_its_name():
     assert len(left_out) == 1
 
 
+@pytest.mark.parametrize(("name", "value"), [("x", 9999), ("y", -9999), ("phi", 65.5)])
+def test_a_single_wild_sample_is_no_other_unit(name, value):
+    def spoil(v):
+        v[name][700] = value
+
+    kept, _ = usable(experiment((recording(change=spoil), "fit")))
+    codes = {one.code for one in kept.runs[0].recording.doubts}
+    assert codes - {"turns.angle"} == {"outlier.channel"}
+
+
 def placed(one, shift, angle):
     """The same recording in another frame."""
     way = (one.values["x"] + 1j * one.values["y"]) * np.exp(1j * angle) + shift

@@ -84,8 +84,7 @@ def unit_notices(recording: Recording) -> Iterator[Notice]:
         yield notice("units.frames")
     elif len(t) > 2 and step >= _SLOWEST:
         yield notice("units.milliseconds" if step < 1000 * _SLOWEST else "units.time", step=step)
-    known = (values[np.isfinite(values)] for values in map(recording.data, ("x", "y", "phi")))
-    x, y, phi = (values if len(values) else np.zeros(1) for values in known)
+    x, y, phi = (_ends(recording.data(name)) for name in ("x", "y", "phi"))
     ranges = float(np.ptp(x)), float(np.ptp(y))
     if max(ranges) > _NO_ROOM:
         yield notice("units.place", widest=max(ranges))
@@ -94,6 +93,16 @@ def unit_notices(recording: Recording) -> Iterator[Notice]:
     largest = float(np.abs(phi).max())
     if largest > 2 * np.pi:
         yield notice("units.angle" if largest > _NO_ANGLE else "units.degrees", largest=largest)
+
+
+def _ends(values: Array) -> Array:
+    """The ends of the range of 99 %: what a single sample says is no unit."""
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return np.zeros(2)
+    return np.array(
+        [np.percentile(known, 0.5, method="higher"), np.percentile(known, 99.5, method="lower")]
+    )
 
 
 _HEADING = 6.0
