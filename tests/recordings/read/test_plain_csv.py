@@ -98,6 +98,8 @@ def test_encodings(write, mark, encoding):
         "# " + ROWS,
         "\n\n" + ROWS,
         "# a remark\n" + ROWS,
+        "# T = 1 s, amplitude 0.5 rad\n" + ROWS,
+        "#" + ROWS.replace("t,x", "t (s),x"),
         ROWS.replace("\n0.01", "\n\n0.01"),
         ROWS.rstrip("\n"),
         ROWS.upper().replace("E", "e"),

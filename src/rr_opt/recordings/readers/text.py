@@ -141,6 +141,10 @@ def cells_of(line: str, separator: str) -> list[str]:
     return [cell.strip().strip('"').strip() for cell in line.split(separator)]
 
 
+_TIME = re.compile(r"t(\s*[\[(].*[\])])?")
+"""The column `t`, with or without its unit: `t [ms]`."""
+
+
 def find_header(text: Text) -> Header | None:
     """The first line that says something and is no remark; None if the file has none.
 
@@ -153,7 +157,7 @@ def find_header(text: Text) -> Header | None:
         separator = separator_of(bare)
         cells = cells_of(bare, separator)
         names = [cell.casefold() for cell in cells]
-        if line.lstrip().startswith("#") and not any(re.match(r"t\b", one) for one in names):
+        if line.lstrip().startswith("#") and not any(map(_TIME.fullmatch, names)):
             continue
         while names and not names[-1]:
             names.pop()
