@@ -1,5 +1,7 @@
 """Rows of a machine's recording: what is dropped of them, and what does not matter."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,11 @@ recordings: [{file: run.csv}]
 
 
 def read(folder, rows, head="t,q,u"):
-    (folder / "run.csv").write_text("\n".join([head, *rows, ""]))
+    return read_text(folder, "\n".join([head, *rows, ""]))
+
+
+def read_text(folder, text):
+    (folder / "run.csv").write_text(text)
     (folder / "experiment.yaml").write_text(TEXT)
     plan = read_machine_plan(folder, machine_named("pendulum"))
     experiment, issues = machine_experiment(plan)
@@ -41,3 +47,12 @@ def test_of_two_recordings_in_one_file_one_is_read(tmp_path):
 def test_a_recording_without_times_is_refused(tmp_path):
     with pytest.raises(AssertionError, match="Read 0 rows"):
         read(tmp_path, [row[4:] for row in ROWS])
+
+
+def test_columns_that_are_not_read_may_hold_text(tmp_path):
+    run = read(tmp_path, [f"{row},ok" for row in ROWS], "t,q,u,state")
+    np.testing.assert_allclose(run.t, T)
+    keys = ("t", "q", "u")
+    entries = [dict(zip(keys, map(float, row.split(",")), strict=True)) for row in ROWS]
+    text = json.dumps({"entries": [{**entry, "state": "ok"} for entry in entries]})
+    np.testing.assert_allclose(read_text(tmp_path, text).t, T)

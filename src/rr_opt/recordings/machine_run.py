@@ -1,7 +1,7 @@
 """Recordings of any machine: CSV with a header row, or JSON with `entries`."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -65,8 +65,11 @@ def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue
 
 
 def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
-    machine, table = plan.experiment.machine, read_columns(one.file)
-    t = _channel(one, table, Channel("t", "s", "the time"))
+    machine, time = plan.experiment.machine, Channel("t", "s", "the time")
+    where = [_where(one, channel) for channel in (time, *machine.channels)]
+    named = {_plain(each.column) for each in where if isinstance(each, Column)}
+    table = read_columns(one.file, named)
+    t = _channel(one, table, time)
     timed = np.flatnonzero(np.abs(t) < LATEST)
     rising = timed[longest_rising(t[timed])]
     keep = rising[np.diff(t[rising], prepend=-np.inf) > 0]
@@ -209,15 +212,21 @@ def _stuck(y: Array) -> int:
     return int(np.sum((still >= _STILL) & (after > _JUMP * np.percentile(steps[moves], 95))))
 
 
-def read_columns(file: Path) -> dict[str, Array]:
-    """Columns (n,) by name; a number in a JSON file's head is constant. Raises InputError."""
+def read_columns(file: Path, named: Container[str]) -> dict[str, Array]:
+    """Columns (n,) by name; a number in a JSON file's head is constant.
+
+    Columns that are not named may hold anything; they are NaN. Raises InputError.
+    """
     content = read_content(file, LONG)
     if content.lstrip().startswith(b"{"):
         try:
             data = json.loads(content)
             entries = data["entries"]
             names = list(entries[0])
-            table = {k: np.array([row[k] for row in entries], float) for k in names}
+            table = {
+                k: np.array([row[k] if _plain(k) in named else np.nan for row in entries], float)
+                for k in names
+            }
         except (ValueError, KeyError, TypeError, IndexError, RecursionError) as error:
             refuse(str(file), f"Read JSON that does not fit: {error!r}. Expected `entries`, a list "
                    "of mappings from column to number.")  # fmt: skip
@@ -228,17 +237,26 @@ def read_columns(file: Path) -> dict[str, Array]:
     header = find_header(text)
     if header is None:
         refuse(str(file), "The file has no rows. Expected a header row and numbers.")
-    table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
+    names = [name if name in named else None for name in header.names]
+    table = read_table(text, header.at + 1, len(text.lines), header.separator, names)
     return {name: table.values[:, k] for k, name in enumerate(header.names)}
+
+
+def _where(one: PlannedRecording, channel: Channel) -> Column | float:
+    return one.columns.get(channel.name, Column(channel.name))
+
+
+def _plain(name: str) -> str:
+    return name.strip().casefold()
 
 
 def _channel(one: PlannedRecording, table: Mapping[str, Array], channel: Channel) -> Array:
     size = len(next(iter(table.values())))
-    where = one.columns.get(channel.name, Column(channel.name))
+    where = _where(one, channel)
     if not isinstance(where, Column):
         return np.full(size, where)
-    found = {name.strip().casefold(): y for name, y in table.items()}
-    name = where.column.strip().casefold()
+    found = {_plain(name): y for name, y in table.items()}
+    name = _plain(where.column)
     if name not in found:
         if channel.default is not None and channel.name not in one.columns:
             return np.full(size, channel.default)

@@ -34,7 +34,8 @@ def test_as_written(write):
 
 
 def test_any_order_of_columns_and_others_are_told(write):
-    run = read_file(write("phi,note,torque,y,x,t,psi\n4,,0.5,2,1,0,3\n4.1,,0.6,2.1,1.1,0.1,3.1\n"))
+    rows = "phi,note,torque,y,x,t,psi\n4,,0.5,2,1,0,3\n4.1,in view,0.6,2.1,1.1,0.1,3.1\n"
+    run = read_file(write(rows))
     assert [run.values[name].tolist() for name in ("x", "y", "psi", "phi", "torque")] == [
         [1.0, 1.1], [2.0, 2.1], [3.0, 3.1], [4.0, 4.1], [0.5, 0.6],
     ]  # fmt: skip

@@ -47,7 +47,8 @@ def read_columns(
         refuse(text.file, f"The file has no rows. Expected {expected}. Export it again.")
     header, units = _renamed(header, options.columns, known)
     _check(header, needed, known, options.columns, text.file)
-    table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
+    read = [name if name in known else None for name in header.names]
+    table = read_table(text, header.at + 1, len(text.lines), header.separator, read)
     doubts = list(table.doubts)
     others = [one for one in header.names if one not in known]
     if others:
@@ -57,8 +58,8 @@ def read_columns(
         column = options.columns.get(name, Column(name))
         if name in units and column.factor == 1:
             column = replace(column, factor=_factor(units[name], name, header, text.file))
-        read = table.values[:, header.names.index(name)]
-        values[name], notices = converted(read, column)
+        cells = table.values[:, header.names.index(name)]
+        values[name], notices = converted(cells, column)
         doubts += notices
     t = values.pop("t")
     order = in_order(t, np.column_stack([*values.values()]), table.lines)
