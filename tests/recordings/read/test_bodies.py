@@ -19,7 +19,7 @@ from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.experiment import Layout, Noise
 from rr_opt.recordings.experiment import experiment_of, read_experiment
 from rr_opt.recordings.inspection import Circumstances, inspected
-from rr_opt.recordings.readers import ReadOptions, ServoLog, read_file
+from rr_opt.recordings.readers import ReadOptions, ServoLog, read_file, ros_bag
 from tests.recordings.read.test_experiment import motion
 
 SPOTS = {"rear": (1, 0.12, 0.03, 0.4), "front": (2, -0.05, -0.02, -2.0)}
@@ -115,8 +115,11 @@ def qualisys():
     return head + rows(body, "\t")
 
 
-def bag(folder, kind, *, late=0.0, joints=True):
-    """Written by rosbags: `rear` as PoseStamped, `front` as TransformStamped, a JointState."""
+def bag(folder, kind, *, late=0.0, joints=True, still=None):
+    """Written by rosbags: `rear` as PoseStamped, `front` as TransformStamped, a JointState.
+
+    still: when the transform of a camera was stamped, which is repeated
+    """
     pytest.importorskip("rosbags")
     from rosbags.rosbag1 import Writer as Writer1
     from rosbags.rosbag2 import StoragePlugin, Writer
@@ -147,6 +150,10 @@ def bag(folder, kind, *, late=0.0, joints=True):
         vector, point, quaternion = (
             types[f"geometry_msgs/msg/{one}"] for one in ("Vector3", "Point", "Quaternion")
         )
+        for now in (1, 10**9 + 1) if still is not None else ():
+            made = types["geometry_msgs/msg/Transform"](vector(0, 0, 2), quaternion(0, 0, 0, 1))
+            made = types[transform](header(still), "camera", made)
+            writer.write(ways["/tf_front"], now, serialise(made, transform))
         for k in range(N):
             t, now = k / 100, 10**9 + k * 10**7
             (at, turned), (at2, turned2) = (
@@ -233,13 +240,30 @@ def test_bodies_that_are_stamped_apart_are_put_on_one_clock(tmp_path):
     path = bag(tmp_path, "mcap", late=0.004)
     read = read_file(path)
     assert read.doubts == (
-        "Not time-stamped together with the first body, so put on its times: 'front'.",
+        "Not time-stamped together with the body with most poses, so put on its times: 'front'.",
     )
     here, there = (read.positions[1:-1, read.labels.index(one)] for one in ("rear", "front"))
     np.testing.assert_allclose(here, poses()["rear"][0][1:-1], atol=1e-9)
     # 4 ms of 10 were added to its stamps.
     true = poses()["front"][0]
     np.testing.assert_allclose(there, (0.6 * true[1:] + 0.4 * true[:-1])[:-1], atol=1e-9)
+
+
+@pytest.mark.parametrize("still", [-17e8, -3600, 0])
+def test_a_frame_that_is_fixed_to_another_is_no_body(tmp_path, still):
+    found = inspected(bag(tmp_path, "mcap", still=still), Circumstances())
+    check(found)
+    assert "Not read, as they have a single time stamp: 'camera'." in found.doubts
+
+
+def test_the_times_are_those_of_the_body_with_most_poses(tmp_path, monkeypatch):
+    path = bag(tmp_path, "mcap")
+    poses, joints = ros_bag._messages(path)
+    poses["rear"] = poses["rear"][::3]
+    monkeypatch.setattr(ros_bag, "_messages", lambda _: (poses, joints))
+    read = read_file(path)
+    np.testing.assert_allclose(read.t, np.arange(N) / 100, atol=1e-9)
+    assert "'rear'" in read.doubts[-1]
 
 
 def test_the_rotation_matrix_of_qualisys_is_stored_by_columns(write):

@@ -2,9 +2,10 @@
 
 Of a ROS 2 bag its folder is named, or a file in it, beside `metadata.yaml`. Poses are
 `PoseStamped` (a body is a topic), `TransformStamped` and `TFMessage` (a body is a child frame), by
-the stamps in their headers. Bodies that were not stamped together are put on the first one's times
-by a straight line and the shortest turn between the two poses about each; what has no pose within
-one and a half steps stays missing. A `JointState` is the servo's own log.
+the stamps in their headers. Those with a single stamp are not read. Bodies that were not stamped
+together are put on the times of the one with most poses by a straight line and the shortest turn
+between the two poses about each; what has no pose within one and a half steps stays missing. A
+`JointState` is the servo's own log.
 """
 
 from pathlib import Path
@@ -111,11 +112,16 @@ def _ordered(rows: list[Any], start: int) -> tuple[Array, Array, tuple[Notice, .
 
 
 def _poses(file: str, poses: dict[str, list[Any]]) -> MarkerData:
-    start = min(row[0] for rows in poses.values() for row in rows)
-    bodies = {name: _ordered(rows, start) for name, rows in poses.items()}
-    t, _, doubts = next(iter(bodies.values()))
-    if len(t) < 2:
+    # A frame that is fixed to another one is published once, at any time.
+    still = [name for name, rows in poses.items() if len({row[0] for row in rows}) < 2]
+    moving = {name: rows for name, rows in poses.items() if name not in still}
+    if not moving:
         refuse(file, "Read fewer than two poses of a body. Expected a recording. Record it again.")
+    start = min(row[0] for rows in moving.values() for row in rows)
+    bodies = {name: _ordered(rows, start) for name, rows in moving.items()}
+    t, _, doubts = max(bodies.values(), key=lambda body: len(body[0]))
+    if still:
+        doubts = (*doubts, notice("bodies.still", names=shown(", ".join(still))))
     positions, rotations, moved = [], [], []
     for name, (own, values, _) in bodies.items():
         pose = values[:, :3], matrices(values[:, None, 3:], "quaternion")[:, 0]
