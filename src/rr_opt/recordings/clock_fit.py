@@ -80,14 +80,16 @@ def clock_fit(t: Array, phi: Array, reference: Reference, offset: float) -> Cloc
     t, phi = t[known], phi[known]
     t_mid = float((t[0] + t[-1]) / 2)
     since = t - t_mid
-    middle = float(np.nanmean(reference(t + offset)[0]))
+    # p[0] is what is added to it: steps are judged relative to p, and an offset may be a date.
+    near = t + offset
+    middle = float(np.nanmean(reference(near)[0]))
 
     def off(p: Array) -> Array:
-        g, _ = reference(t + p[0] + p[1] * since)
+        g, _ = reference(near + p[0] + p[1] * since)
         return np.nan_to_num(p[3] + middle + p[2] * (g - middle) - phi)
 
     def slopes(p: Array) -> Array:
-        g, rate = reference(t + p[0] + p[1] * since)
+        g, rate = reference(near + p[0] + p[1] * since)
         outside = ~np.isfinite(g)
         J = np.stack([p[2] * rate, p[2] * rate * since, g - middle, np.ones_like(g)], 1)
         J[outside] = 0.0
@@ -96,15 +98,15 @@ def clock_fit(t: Array, phi: Array, reference: Reference, offset: float) -> Cloc
     size = float(np.ptp(phi))
     if not size > 0:
         return None
-    start = [offset, 0.0, 1.0, 0.0]
+    start = [0.0, 0.0, 1.0, 0.0]
     found = least_squares(off, start, slopes, method="lm", x_scale="jac")  # type: ignore[arg-type]
     left, J = off(found.x), slopes(found.x)
     variances = _variances(J, left)
     if variances is None:
         return None
-    offset, drift, scale, bias = found.x.tolist()
+    more, drift, scale, bias = found.x.tolist()
     sigma, rms = tuple(np.sqrt(variances).tolist()), float(np.sqrt(np.mean(left**2)))
-    return ClockFit(offset, drift, sigma, t_mid, scale, bias, rms, len(t))
+    return ClockFit(offset + more, drift, sigma, t_mid, scale, bias, rms, len(t))
 
 
 def _variances(J: Array, left: Array) -> Array | None:

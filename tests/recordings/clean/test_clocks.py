@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from rr_opt.model.experiment import Recording
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.clock_fit import against_command
+from rr_opt.recordings.clock_fit import against_command, clock_fit
 from rr_opt.recordings.nuisances import command
 from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.readers.plain_csv import ServoLog
@@ -40,6 +40,18 @@ def test_the_command_s_clock_is_covered_in_white_and_in_coloured_noise(memory):
     # 95 % of 100 are 95; binomial noise alone is 2.
     assert (inside >= 0.88 * tries).all()
     assert (inside < tries).all()
+
+
+def test_a_clock_that_has_the_date_is_fitted_as_well():
+    phi = GAIT.angle(T + 0.05) + np.random.default_rng(3).normal(0, 3e-3, len(T))
+
+    def fitted(date):
+        return clock_fit(T, phi, lambda u: (GAIT.angle(u - date), GAIT.rate(u - date)), date)
+
+    near, far = fitted(0.0), fitted(1.7e9)
+    assert far.offset - 1.7e9 == pytest.approx(near.offset, abs=1e-6)
+    assert far.drift == pytest.approx(near.drift, abs=1e-7)
+    assert far.residual == pytest.approx(near.residual, rel=1e-4)
 
 
 def log_of(offset, drift, true, rng):
