@@ -75,7 +75,7 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
     keep = rising[np.diff(t[rising], prepend=-np.inf) > 0]
     doubts = []
     if dropped := t.size - keep.size:
-        why = "they have no time, or one that repeats or runs backwards"
+        why = "their times repeat, run backwards or are missing"
         doubts.append(f"Rows dropped because {why}: {dropped}.")
     data = {c.name: _channel(one, table, c)[keep] for c in machine.channels}
     t = t[keep]

@@ -69,7 +69,7 @@ def test_millimetres_are_told_with_the_ranges():
     def change(values):
         values["x"] = np.linspace(0, 1812, len(values["x"]))
 
-    assert "1812" in texts(clean(recording(change)))
+    assert "1794" in texts(clean(recording(change)))  # 99 % of it
 
 
 def test_whole_turns_are_taken_out():
