@@ -251,12 +251,8 @@ def findings(result: Identification, choices: Sequence[Choice]) -> tuple[Finding
             without = result.selection.fitted(rest, [{}], result.best)
             change = without.excess**2 - result.best.excess**2
             removes = float(np.clip(change / base, 0.0, 1.0))
-        start = f"{choice.name}."
-        values = {
-            name.removeprefix(start): one
-            for name, one in result.estimates.items()
-            if name.startswith(start)
-        }
+        own = f"{choice.name}."
+        values = {n[len(own) :]: e for n, e in result.estimates.items() if n.startswith(own)}
         others = (*_undecided(result, choice), *catalogue[choice.name].unmodelled)
         out.append(Finding(choice.name, result.confidences[choice.name], values, removes, others))
     return tuple(sorted(out, key=lambda one: -one.removes))
