@@ -70,9 +70,7 @@ class LinearModel:
         """Anything."""
         return np.array([0.3, -0.2])
 
-    def converted(
-        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
-    ) -> Array:
+    def converted(self, request: Request, effects: tuple[str, ...]) -> Array:
         """The same."""
         return request.state
 

@@ -24,7 +24,7 @@ def made(name, values):
 
     def predict(run, start):
         plain = Request(whole(empty, run), {}, start[:4])
-        return empty.predicted(replace(plain, state=empty.converted(plain, (), ())), ())
+        return empty.predicted(replace(plain, state=empty.converted(plain, ())), ())
 
     return recorded(empty.experiment, predict, 4)
 

@@ -183,9 +183,7 @@ class OdeModel:
         begun = self.machine.start(seen)
         return np.array([begun[name] for name in self.machine.states])
 
-    def converted(
-        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
-    ) -> Array:
+    def converted(self, request: Request, effects: tuple[str, ...]) -> Array:
         """The state unchanged: no effect has a state of its own."""
         return request.state
 

@@ -221,7 +221,7 @@ def _converted(
     model: Model, parent: Fit, effects: tuple[str, ...], values: Mapping[str, float]
 ) -> dict[Segment, Array]:
     return {
-        one: model.converted(Request(one, values, state), parent.effects, effects)
+        one: model.converted(Request(one, values, state), effects)
         for one, state in parent.states.items()
     }
 

@@ -250,9 +250,7 @@ class Model(Protocol):
         """An initial guess of the state at the start of a segment."""
         ...
 
-    def converted(
-        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
-    ) -> Array:
+    def converted(self, request: Request, effects: tuple[str, ...]) -> Array:
         """The state of a model with other effects that corresponds to this one."""
         ...
 

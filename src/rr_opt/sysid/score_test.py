@@ -54,7 +54,7 @@ def scores(fit: Fit, most: int) -> list[Score]:
     effects = with_all(fit)
     values = {**fit.values, **{q.name: q.neutral for q in added.values()}}
     states = {
-        one: model.converted(Request(one, values, state), fit.effects, effects)
+        one: model.converted(Request(one, values, state), effects)
         for one, state in fit.states.items()
     }
     wide = replace(problem, effects=effects, quantities=quantities)

@@ -151,16 +151,14 @@ class RacerModel:
         heading = seen[:, 2].mean() if len(seen) else 0.0
         v = (dx * np.cos(heading) + dy * np.sin(heading)) / took
         plain = Request(segment, values, np.array([*first, v]))
-        state = self.simulator.converted(plain, (), effects)
+        state = self.simulator.converted(plain, effects)
         if state.size > plain.state.size:
             state[-2:] = side_speeds(self.experiment.robot, run.gait, t, recorded)
         return state
 
-    def converted(
-        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
-    ) -> Array:
+    def converted(self, request: Request, effects: tuple[str, ...]) -> Array:
         """The state with other effects."""
-        return self.simulator.converted(request, before, effects)
+        return self.simulator.converted(request, effects)
 
     def state_scale(self, effects: tuple[str, ...]) -> Array:
         """The slow part of the noise; for speeds, what adds up to as much in a second, or within

@@ -169,7 +169,7 @@ def _begun(
     """Initial state in the middle of the floor; running robots are as fast as recorded ones."""
     z = 0.0 if plan.start == "rest" else racer.setting.speed
     plain = Request(segment, best.values, np.array([*middle, plan.heading, z]))
-    return empty.simulator.converted(plain, (), best.effects)
+    return empty.simulator.converted(plain, best.effects)
 
 
 def _linearised(

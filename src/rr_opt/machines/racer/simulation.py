@@ -286,9 +286,7 @@ class Simulator:
         made = predict_all(system, [each[:3] for each in ready])
         return [(path, one, p, given) for (path, _, p, given), one in zip(ready, made, strict=True)]
 
-    def converted(
-        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
-    ) -> Array:
+    def converted(self, request: Request, effects: tuple[str, ...]) -> Array:
         """The state with other effects: z or v, and side speeds that are 0 or left out."""
         new, state = self.every(effects), request.state
         if slips(new) == (state.size > V + 1):
