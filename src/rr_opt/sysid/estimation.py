@@ -258,7 +258,8 @@ class FitProblem:
         out = {}
         for run, parts in self.by_run.items():
             tight = 1 / self.process_noise(run, self.q)
-            total = sum(made[one].cost + float(np.sum((weak * states[one]) ** 2)) for one in parts)
+            total = sum(made[one].cost for one in parts)
+            total += float(np.sum((weak * states[parts[0]]) ** 2))
             if np.isfinite(total):
                 for one, after in itertools.pairwise(parts):
                     total += float(np.sum((tight * (made[one].end - states[after])) ** 2))
@@ -322,11 +323,13 @@ class Linear:
         prior, own, each = 1 / known**2, size * count, np.arange(count)
         # Blocks of the states (S), of the quantities or other columns (H), and between (across).
         S = np.zeros((runs, count, size, count, size))
-        S[:, each, :, each, :] = grams[:, :, :size, :size].swapaxes(0, 1) + np.diag(prior)
-        g = grams[:, :, :size, -1] + prior * states
+        S[:, each, :, each, :] = grams[:, :, :size, :size].swapaxes(0, 1)
+        S[:, 0, :, 0, :] += np.diag(prior)
+        g = grams[:, :, :size, -1].copy()
+        g[:, 0] += prior * states[:, 0]
         across, H = grams[:, :, :size, size:-1].copy(), grams[:, :, size:-1, size:-1].sum(axis=1)
         g_shared = grams[:, :, size:-1, -1].sum(axis=1)
-        value = grams[:, :, -1, -1].sum(axis=1) + np.sum(prior * states**2, axis=(1, 2))
+        value = grams[:, :, -1, -1].sum(axis=1) + np.sum(prior * states[:, 0] ** 2, axis=1)
         # Gaps between segments.
         tight = noise[:, None] ** -2
         pull = by.swapaxes(2, 3) * tight[:, None]
@@ -355,7 +358,7 @@ class Linear:
         log = 2 * np.sum(np.log(diagonal), axis=1)
         log += 2 * (count - 1) * np.sum(np.log(noise / scale), axis=1)
         proper = np.isfinite(known)
-        log += count * 2 * float(np.sum(np.log(known[proper] / scale[proper])))
+        log += 2 * float(np.sum(np.log(known[proper] / scale[proper])))
         for k, (run, _) in enumerate(asked):
             n = problem.degrees[run]
             if not sound[k]:

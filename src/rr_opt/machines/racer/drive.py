@@ -17,7 +17,7 @@ from rr_opt.motion.floor_motion import free_joint_of
 from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
-_LONGEST, _SHARP, _SHARPEST = 0.012, 0.003, 0.0015
+_LONGEST, _SHARP, _SHARPEST = 0.012, 0.003, 0.0004
 """Longest step, s: in general, with dry friction or wheels that creep, and with wheels that slide:
 with twice the last, derivatives across the onset of sliding are off by a factor."""
 _APART = 1e-6

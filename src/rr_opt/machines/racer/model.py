@@ -164,7 +164,7 @@ class RacerModel:
         """The slow part of the noise; for speeds, what adds up to as much in a second, or within
         the decay time of a side speed."""
         place, heading = self._stated
-        sides = [place / SETTINGS.creeping] * 2 if slips(self.simulator.every(effects)) else []
+        sides = [place] * 2 if slips(self.simulator.every(effects)) else []
         return np.array([place, place, heading, place, *sides])
 
     @cached_property
@@ -186,8 +186,8 @@ class RacerModel:
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Side speeds are about 0: what they do to the motion is of the order of the noise."""
-        scale = self.state_scale(effects)
-        return np.array([*[np.inf] * 4, *scale[4:]])
+        sides = self.state_scale(effects)[4:] / SETTINGS.creeping
+        return np.array([*[np.inf] * 4, *sides])
 
     def prepare(self, every: Iterable[tuple[str, ...]]) -> None:
         """Compile ahead."""
