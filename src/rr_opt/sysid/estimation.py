@@ -320,16 +320,14 @@ class Linear:
             np.stack, zip(*(self._stacked[run] for run, _ in asked), strict=True)
         )
         runs, count, size = states.shape
-        prior, own, each = 1 / known**2, size * count, np.arange(count)
+        own, each = size * count, np.arange(count)
         # Blocks of the states (S), of the quantities or other columns (H), and between (across).
         S = np.zeros((runs, count, size, count, size))
         S[:, each, :, each, :] = grams[:, :, :size, :size].swapaxes(0, 1)
-        S[:, 0, :, 0, :] += np.diag(prior)
         g = grams[:, :, :size, -1].copy()
-        g[:, 0] += prior * states[:, 0]
         across, H = grams[:, :, :size, size:-1].copy(), grams[:, :, size:-1, size:-1].sum(axis=1)
         g_shared = grams[:, :, size:-1, -1].sum(axis=1)
-        value = grams[:, :, -1, -1].sum(axis=1) + np.sum(prior * states[:, 0] ** 2, axis=1)
+        value = grams[:, :, -1, -1].sum(axis=1)
         # Gaps between segments.
         tight = noise[:, None] ** -2
         pull = by.swapaxes(2, 3) * tight[:, None]
@@ -357,8 +355,7 @@ class Linear:
         diagonal = np.diagonal(np.linalg.cholesky(S), axis1=1, axis2=2)
         log = 2 * np.sum(np.log(diagonal), axis=1)
         log += 2 * (count - 1) * np.sum(np.log(noise / scale), axis=1)
-        proper = np.isfinite(known)
-        log += 2 * float(np.sum(np.log(known[proper] / scale[proper])))
+        log += 2 * float(np.sum(np.log((known / scale)[np.isfinite(known)])))
         for k, (run, _) in enumerate(asked):
             n = problem.degrees[run]
             if not sound[k]:
@@ -380,14 +377,21 @@ class Linear:
 
     @cached_property
     def _stacked(self) -> Mapping[int, tuple[Array, Array, Array, Array]]:
-        """By run, stacked over its segments: grams; derivatives of all ends but the last; initial
-        states; gaps between each end and the next initial state."""
-        out = {}
+        """By run, stacked over its segments: grams, that of the first with the state's prior;
+        derivatives of all ends but the last; initial states; gaps between each end and the next
+        initial state."""
+        out, prior = {}, self.problem.model.state_prior(self.problem.effects) ** -2
         for run, parts in self.problem.by_run.items():
             states = np.array([self.states[one] for one in parts])
+            grams = np.array([self.parts[one][0] for one in parts])
+            size, pull = prior.size, prior * states[0]
+            grams[0, :size, :size] += np.diag(prior)
+            grams[0, :size, -1] += pull
+            grams[0, -1, :size] += pull
+            grams[0, -1, -1] += pull @ states[0]
             ends = np.array([self.made[one].end for one in parts[:-1]]).reshape(-1, states.shape[1])
             out[run] = (
-                np.array([self.parts[one][0] for one in parts]),
+                grams,
                 np.array([self.parts[one][1] for one in parts])[:-1],
                 states,
                 ends - states[1:],

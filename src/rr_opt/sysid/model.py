@@ -264,7 +264,8 @@ class Model(Protocol):
         ...
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
-        """Prior standard deviation of each state that is known to be about 0; else inf."""
+        """Prior standard deviation of each state of a run's start that is known to be about 0; else
+        inf."""
         ...
 
     def prepare(self, every: Iterable[tuple[str, ...]]) -> None:

@@ -11,7 +11,7 @@ residual.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,12 @@ class DriveSlopes:
         """From sample `first` to sample `last`, with `each` steps between two samples."""
         middle = self.middle[:, first * each : last * each]
         return DriveSlopes(self.at[:, first : last + 1], middle, self.columns)
+
+    def coarser(self, count: int) -> DriveSlopes:
+        """In steps of so many each."""
+        size, steps, k = self.middle.shape
+        middle = self.middle.reshape(size, steps // count, count, k).mean(axis=2)
+        return DriveSlopes(self.at, middle, self.columns)
 
 
 @dataclass(frozen=True)
@@ -254,12 +260,22 @@ class Sought:
     recorded: Recorded
     more: Array | None = None
 
+    @property
+    def coarse(self) -> Sought:
+        """The same in the steps of derivatives."""
+        count, by = self.path.fine, self.drive_by
+        if count == 1:
+            return self
+        by = by and by.coarser(count)
+        return replace(self, path=self.path.coarse, made=self.made.coarser(count), drive_by=by)
+
 
 def grams(system: System, asked: Sequence[Sought]) -> list[tuple[Array, Array]]:
     """J'J (n, n) of each run, without samples where the prediction is not finite; and derivatives
     of its last state (size, size + nw) by initial state and wanted quantities."""
     if not asked:
         return []
+    asked = [one.coarse for one in asked]
     code = code_of(system, 4 * sum(one.path.h.size for one in asked))
     return code.grams([_rows(one) for one in asked]) if code else [_gram(system, a) for a in asked]
 

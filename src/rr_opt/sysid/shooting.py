@@ -51,12 +51,14 @@ class DrivePath:
     h      (steps,) s, `each` of them between two samples
     nodes  (size, 3, steps) at the beginning, in the middle and at the end of each step
     at     (size, samples) at the samples
+    fine   how many steps derivatives take as one
     """
 
     h: Array
     nodes: Array
     at: Array
     each: int
+    fine: int = 1
 
     @cached_property
     def inputs(self) -> Array:
@@ -68,7 +70,19 @@ class DrivePath:
         """From sample `first` to sample `last`."""
         during = slice(first * self.each, last * self.each)
         h, nodes, at = self.h[during], self.nodes[:, :, during], self.at[:, first : last + 1]
-        return DrivePath(h, nodes, at, self.each)
+        return DrivePath(h, nodes, at, self.each, self.fine)
+
+    @cached_property
+    def coarse(self) -> DrivePath:
+        """In the steps of derivatives."""
+        return self.coarser(self.fine)
+
+    def coarser(self, count: int) -> DrivePath:
+        """In steps of so many each; their middle is the mean."""
+        split = self.nodes.reshape(*self.nodes.shape[:2], -1, count)
+        nodes = split[:, 0, :, 0], split[:, 1].mean(axis=2), split[:, 2, :, -1]
+        h = self.h.reshape(-1, count).sum(axis=1)
+        return DrivePath(h, np.stack(nodes, axis=1), self.at, self.each // count)
 
 
 @dataclass(frozen=True)
@@ -77,6 +91,10 @@ class Path:
 
     states: Array
     seen: Array
+
+    def coarser(self, count: int) -> Path:
+        """In steps of so many each."""
+        return Path(self.states[:, ::count], self.seen)
 
 
 def predict(system: System, path: DrivePath, start: Array, p: Array) -> Path:

@@ -17,9 +17,12 @@ from rr_opt.motion.floor_motion import free_joint_of
 from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
-_LONGEST, _SHARP, _SHARPEST = 0.012, 0.003, 0.0004
-"""Longest step, s: in general, with dry friction or wheels that creep, and with wheels that slide:
-with twice the last, derivatives across the onset of sliding are off by a factor."""
+_LONGEST, _SHARP, _STIFF = 0.012, 0.003, 0.0004
+"""Longest step, s: in general, with dry friction, and with wheels that slip: four times as long, a
+fast robot whose wheels hold is off by 0.5 mm within 5 s, and one that slides by a few mm."""
+_COARSER = 4
+"""Steps of wheels that slip which derivatives take as one: twice as many, and those across the
+onset of sliding are off by a factor."""
 _APART = 1e-6
 """A jump of dphi this near to the end of a step, s, counts as at it."""
 _MOST = 3
@@ -109,7 +112,7 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
         nodes[0, 1, k], nodes[1, :, k] = (begin + end) / 2, rate
         if steps.stiff:
             nodes[2, ::2, k] = 2 * (rate - before) / h[k], 2 * (after - rate) / h[k]
-    return DrivePath(h, nodes, at, steps.each)
+    return DrivePath(h, nodes, at, steps.each, min(_COARSER, steps.each) if steps.stiff else 1)
 
 
 Made = tuple[int, tuple[tuple[str, tuple[tuple[str, float], ...]], ...], FreeJoint | None]
@@ -205,7 +208,7 @@ def drive_slopes(
     if not moving:
         return None
     here = drives.of(run, given, effects)
-    steps = steps_of(here, t, lateness(given, effects), **grain(given, effects))
+    steps = steps_of(here, t, lateness(given, effects), **grain(effects))
 
     def path_at(values: Mapping[str, float]) -> DrivePath:
         # On the very steps used for prediction, with one rate per step where dphi jumps, so that a
@@ -242,15 +245,13 @@ def joint_of(given: Mapping[str, float]) -> FreeJoint:
     return free_joint_of(lambda parameters: values_of(given, parameters))
 
 
-def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
+def grain(effects: Sequence[str]) -> Grain:
     """Whether some states are stiff, and the longest step, s."""
     every = [CATALOGUE[name] for name in effects]
-    stiff = any(one.stiff for one in every)
-    sharpest = ((one, q) for one in every for q in one.parameters if q.sharp)
-    if any(given[f"{one.name}.{q.name}"] != q.neutral for one, q in sharpest):
-        return {"stiff": stiff, "longest": _SHARPEST}
-    sharp = stiff or any(one.near_discontinuous for one in every)
-    return {"stiff": stiff, "longest": _SHARP if sharp else _LONGEST}
+    if any(one.stiff for one in every):
+        return {"stiff": True, "longest": _STIFF}
+    sharp = any(one.near_discontinuous for one in every)
+    return {"stiff": False, "longest": _SHARP if sharp else _LONGEST}
 
 
 def neighbours(

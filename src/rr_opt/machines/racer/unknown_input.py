@@ -32,7 +32,7 @@ from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Request, Segment
 from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, linear
-from rr_opt.sysid.shooting import DrivePath, Path, System
+from rr_opt.sysid.shooting import DrivePath, System
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
@@ -126,17 +126,14 @@ def linearised_inputs(
     simulated = simulator.paths(requests, effects)
     for request, pushes, (fine, predicted, *_) in zip(requests, inputs, simulated, strict=True):
         segment, each = request.segment, fine.each
-        path = DrivePath(
-            fine.h.reshape(-1, each).sum(axis=1), _sampled(fine.nodes, each), fine.at, 1
-        )
-        made = Path(predicted.states[:, ::each], predicted.seen)
+        path, made = fine.coarser(each), predicted.coarser(each)
         t = racer.runs[segment.run].t[segment.span]
         moments = _moments(path, t)
         plain = _with_drives(path, np.zeros((len(DRIVES), t.size)), moments)
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
         every.append((pushes, t))
-        own = own and _widened(own, each)
+        own = own and _widened(own.coarser(each))
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
     motions = zip(requests, parts, every, linear(system, parts, p, by), strict=True)
     columns = len(wanted) + pieces * len(inputs[0])
@@ -244,22 +241,13 @@ def _whole(grams: Array, ends: Array, wanted: int) -> tuple[Array, Array]:
     return out, state[:, -1, :, :-1]
 
 
-def _widened(own: DriveSlopes, each: int) -> DriveSlopes:
-    """Derivatives of the servo's part of the drive, with zero rows for the pushes; on average
-    between two samples, which are `each` steps apart."""
-    steps = own.middle.reshape(len(own.middle), -1, each, own.columns.size).mean(axis=2)
+def _widened(own: DriveSlopes) -> DriveSlopes:
+    """Derivatives of the servo's part of the drive, with zero rows for the pushes."""
     at, middle = (
-        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))]) for part in (own.at, steps)
+        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))])
+        for part in (own.at, own.middle)
     )
     return DriveSlopes(at, middle, own.columns)
-
-
-def _sampled(nodes: Array, each: int) -> Array:
-    """The drive (size, 3, steps, ...) at the beginning, on average and at the end of the time
-    between two samples."""
-    split = nodes.reshape(*nodes.shape[:2], -1, each, *nodes.shape[3:])
-    ends = split[:, 0, :, 0], split[:, 1].mean(axis=2), split[:, 2, :, -1]
-    return np.stack(ends, axis=1)
 
 
 def _passed(moments: Array) -> Array:
