@@ -1,11 +1,14 @@
 """Wheels that slide: how a run begins, and from where to look for their grip."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rr_opt.machines.racer.grip import slips
 from rr_opt.machines.racer.simulation import side_speeds
 from rr_opt.sysid.candidates import fitted
+from rr_opt.sysid.estimation import solve
 from rr_opt.sysid.model import Choice, Request, Segment
 from tests.sysid.made_up import GAITS, ROBOT, base_of, with_effect
 
@@ -34,6 +37,23 @@ def test_side_speeds_are_those_of_the_axles_places():
         velocity = (after[k] - before[k]) / (2 * step)
         across = velocity @ [-np.sin(heading), np.cos(heading)]
         assert seen[k] == pytest.approx(across, abs=1e-6)
+
+
+@pytest.mark.parametrize("q", [0.02, 0.2, 2.0])
+def test_wheels_that_hold_are_as_likely_as_wheels_that_cannot_slip(q):
+    model = with_effect({}, (), seconds=30.0)
+    plain, effects = base_of(model).fit, ("lateral_slip",)
+    values = {**plain.values, "lateral_slip.creep_compliance": 0.0, "lateral_slip.mu": 10.0}
+    states = {
+        one: model.converted(Request(one, values, state), effects)
+        for one, state in plain.states.items()
+    }
+    fits = [
+        solve(replace(plain.problem, q=q), plain.values, plain.states),
+        solve(replace(plain.problem, effects=effects, q=q), values, states),
+    ]
+    assert len(plain.problem.segments) > 2 * len(model.runs)
+    assert fits[1].deviance == pytest.approx(fits[0].deviance, abs=5.0)
 
 
 @pytest.fixture(scope="module")

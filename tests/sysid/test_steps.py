@@ -14,7 +14,7 @@ from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.model import Request, segments
 from rr_opt.sysid.shooting import predict
-from tests.sysid.made_up import experiment, predicted
+from tests.sysid.made_up import experiment, predicted, whole
 
 VALUES = {
     "": {},
@@ -67,20 +67,35 @@ def test_a_start_after_the_first_sample(values, most, before, monkeypatch):
         if longest:
             monkeypatch.setattr(racer_steps, "_LONGEST", longest)
             monkeypatch.setattr(racer_steps, "_SHARP", longest)
+            monkeypatch.setattr(racer_steps, "_STIFF", longest)
         model = RollerRacer(replace(given, runs=(replace(run, recording=recording),)))
         paths.append(predicted(model, 0, values, effects, np.zeros(6)))
     assert paths[0] == pytest.approx(paths[1], abs=most)
 
 
-def test_sliding_wheels_take_shorter_steps_than_creeping_ones():
-    model, effects = RollerRacer(experiment()), ("lateral_slip",)
-    start, segment = np.zeros(6), segments({0: model.runs[0]})[0]
-    steps = []
-    for mu in (10.0, 0.1):
-        values = {"lateral_slip.creep_compliance": 0.01, "lateral_slip.mu": mu}
-        ((path, *_),) = model.simulator.paths([Request(segment, values, start)], effects)
-        steps.append(path.each)
-    assert steps == [8, 16]
+FAST = ((SineGait(0.95, 0.8, 0.27), "rest"), (SineGait(1.0, 1.0), "running"))
+
+
+@pytest.mark.parametrize("run", [0, 1])
+def test_wheels_that_hold_move_as_without_slip(run):
+    model = RollerRacer(experiment(FAST, seconds=20.0, rate=100.0))
+    held = {"lateral_slip.creep_compliance": 0.0, "lateral_slip.mu": 10.0}
+    start = np.array([0.0, 0.0, 0.3, 0.4 * run, 0.0, 0.0])
+    plain = model.converted(Request(whole(model, run), {}, start[:4]), ("lateral_slip",))
+    with_slip = predicted(model, run, held, ("lateral_slip",), plain)
+    assert with_slip == pytest.approx(predicted(model, run, {}, (), start), abs=5e-4)
+
+
+def test_sliding_wheels_move_as_with_shorter_steps(monkeypatch):
+    values = {"lateral_slip.mu": 0.05}
+    paths = []
+    for longest in (None, 5e-5):
+        if longest:
+            monkeypatch.setattr(racer_steps, "_STIFF", longest)
+        model = RollerRacer(experiment(FAST, seconds=10.0, rate=100.0))
+        paths.append(predicted(model, 0, values, ("lateral_slip",), np.zeros(6)))
+    assert np.abs(paths[1] - predicted(model, 0, {}, (), np.zeros(6))).max() > 0.1
+    assert paths[0] == pytest.approx(paths[1], abs=5e-4)
 
 
 def test_neutral_parameters_are_left_out_of_what_is_predicted():

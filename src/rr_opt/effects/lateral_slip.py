@@ -6,8 +6,8 @@ A wheel whose contact moves sideways at s is pushed back by
 
 which is s/creep while that is small against mu N, and mu N beyond. Without creep the jump of dry
 sliding is smoothed at s0 = 0.1 mm/s. With it wheels that hold creep at s0/(mu N), so it has to be
-small; steps of 1.25 ms need it no smaller. N is the wheel's share of the weight in the straight
-posture, from the balance of moments about either axle; at 0.9 rad it differs by half a per cent.
+small. N is the wheel's share of the weight in the straight posture, from the balance of moments
+about either axle; at 0.9 rad it differs by half a per cent.
 
 Friction of a contact acts against its slip, in one direction. So a wheel that slides sideways also
 lags behind pure rolling, by as much as its bearing resists: it turns more slowly, resists less, and
