@@ -5,6 +5,7 @@ and the start of the next, states may differ by process noise of strength q (tim
 
     E_r = sum of squared residuals of run r
           + sum over gaps |end_k - start_k+1|^2/((q scale)^2 + least^2)
+          + |start_1|^2/prior^2 of the states that are known to be about 0
 
 `least` is how far machines of this kind deviate from any model (`Model.least_process_noise`). With
 q = 0 and least = 0 this is single shooting; with q large the segments are independent. A correct

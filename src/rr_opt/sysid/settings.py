@@ -19,7 +19,8 @@ class Settings:
     search_tolerance      the same for candidates: a hundredth of what counts as evidence
     known                 share of the negligible level to which misfits of whole runs are known
     known_share           share of itself to which that of a fit is: slow creep is not followed
-    trial_runs            number of runs, the worst explained ones, on which guesses are tried
+    trial_runs            number of runs, the worst explained ones, on which guesses are tried; all
+                          if every run is explained to within chance
     trial_starts          number of guesses kept after one Gauss-Newton step
     trial_steps           further steps taken from these: a narrow minimum shows late
     first_steps           steps of a fit before the process noise is estimated
@@ -59,7 +60,8 @@ class Settings:
     starting              s left out after a start from rest: the motor saturates
     bouncing              share of a period after a start from rest for which the joint's angle is
                           left out: with backlash the joint bounces between stops unpredictably
-    creeping              s in which the side speed of a creeping wheel decays
+    creeping              s in which the side speed of a creeping wheel decays: at the start of a
+                          run, it is known to what moves a wheel within that time by the noise
     growth                factor by which errors may grow within a window: e^2
     input_share           error that input noise may cause in a window: this share of the
                           motion in the longest windows (RMS),

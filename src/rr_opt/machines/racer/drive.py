@@ -18,8 +18,9 @@ from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
 _LONGEST, _SHARP, _STIFF = 0.012, 0.003, 0.0004
-"""Longest step, s: in general, with dry friction, and with wheels that slip: four times as long, a
-fast robot whose wheels hold is off by 0.5 mm within 5 s, and one that slides by a few mm."""
+"""Longest step, s: in general, with dry friction, and with wheels that slip. With steps four times
+as long as the last, a fast robot whose wheels hold is off by 0.5 mm within 5 s, and one that slides
+by 1 to 20 mm."""
 _COARSER = 4
 """Steps of wheels that slip which derivatives take as one: twice as many, and those across the
 onset of sliding are off by a factor."""

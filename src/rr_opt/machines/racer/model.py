@@ -161,8 +161,8 @@ class RacerModel:
         return self.simulator.converted(request, effects)
 
     def state_scale(self, effects: tuple[str, ...]) -> Array:
-        """The slow part of the noise; for speeds, what adds up to as much in a second, or within
-        the decay time of a side speed."""
+        """The slow part of the noise; for speeds, what adds up to as much in a second. Side speeds
+        are no less certain than v: wheels that hold pass on theirs to it."""
         place, heading = self._stated
         sides = [place] * 2 if slips(self.simulator.every(effects)) else []
         return np.array([place, place, heading, place, *sides])
@@ -185,7 +185,7 @@ class RacerModel:
         return np.array([_travelled(run)[-1] / run.duration for run in self.runs])
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
-        """Side speeds are about 0: what they do to the motion is of the order of the noise."""
+        """Side speeds are about 0: until they have decayed they move a wheel by the noise."""
         sides = self.state_scale(effects)[4:] / SETTINGS.creeping
         return np.array([*[np.inf] * 4, *sides])
 
