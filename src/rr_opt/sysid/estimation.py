@@ -760,9 +760,14 @@ def initial(
 
 def whole_runs(fit: Fit) -> Fit:
     """The same quantities fitted by least squares over whole runs, or over windows as long as the
-    machine can be predicted: how well the model predicts unaided."""
+    machine can be predicted: how well the model predicts unaided. First over segments with hardly
+    any process noise, as whole runs have more minima."""
+    tight, share = SETTINGS.least_process_noise, SETTINGS.known_share
+    if fit.problem.q > tight:
+        joined = replace(fit.problem, q=tight, robust=False)
+        fit = _known(joined, fit.states, fit.values, share, fit.linear)
     single, states = _whole(fit, fit.problem.by_run, fit.values)
-    return _known(single, states, fit.values, SETTINGS.known_share)
+    return _known(single, states, fit.values, share)
 
 
 def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
@@ -772,12 +777,16 @@ def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit
 
 
 def _known(
-    problem: FitProblem, states: States, values: Mapping[str, float], relative: float = 0.0
+    problem: FitProblem,
+    states: States,
+    values: Mapping[str, float],
+    relative: float = 0.0,
+    known: Linear | None = None,
 ) -> Fit:
     """The solution, its misfit known to a fraction of the negligible level, or to a share of
     itself."""
     enough = SETTINGS.known * SETTINGS.negligible**2 * sum(problem.samples.values())
-    return solve(problem, values, states, tolerance=enough, relative=relative)
+    return solve(problem, values, states, tolerance=enough, relative=relative, known=known)
 
 
 def _whole(
