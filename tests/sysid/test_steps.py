@@ -79,7 +79,7 @@ FAST = ((SineGait(0.95, 0.8, 0.27), "rest"), (SineGait(1.0, 1.0), "running"))
 @pytest.mark.parametrize("run", [0, 1])
 def test_wheels_that_hold_move_as_without_slip(run):
     model = RollerRacer(experiment(FAST, seconds=20.0, rate=100.0))
-    held = {"lateral_slip.creep_compliance": 0.0, "lateral_slip.mu": 10.0}
+    held = {"lateral_slip.creep_compliance": 0.0, "lateral_slip.mu": 9.0}
     start = np.array([0.0, 0.0, 0.3, 0.4 * run, 0.0, 0.0])
     plain = model.converted(Request(whole(model, run), {}, start[:4]), ("lateral_slip",))
     with_slip = predicted(model, run, held, ("lateral_slip",), plain)
@@ -91,7 +91,7 @@ def test_sliding_wheels_move_as_with_shorter_steps(monkeypatch):
     paths = []
     for longest in (None, 5e-5):
         if longest:
-            monkeypatch.setattr(racer_steps, "_STIFF", longest)
+            monkeypatch.setattr(racer_steps, "_SHARPEST", longest)
         model = RollerRacer(experiment(FAST, seconds=10.0, rate=100.0))
         paths.append(predicted(model, 0, values, ("lateral_slip",), np.zeros(6)))
     assert np.abs(paths[1] - predicted(model, 0, {}, (), np.zeros(6))).max() > 0.1

@@ -57,6 +57,8 @@ class Parameter:
     fit_upper         a fit goes no higher, for a given operating range
     costly            its terms take as long to evaluate as all others: while it is neutral,
                       predictions leave them out
+    sharp             while it is not neutral, the force bends so sharply with the speed that
+                      predictions need the shortest steps
     """
 
     name: str
@@ -72,6 +74,7 @@ class Parameter:
     fit_lower: float = -math.inf
     fit_upper: Callable[[OperatingRange], float] | None = None
     costly: bool = False
+    sharp: bool = False
 
     def magnitude(self, operated: OperatingRange) -> float:
         """Usual magnitude for an operating range."""

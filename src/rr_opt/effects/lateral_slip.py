@@ -88,6 +88,7 @@ EFFECT = Effect(
             neutral=10.0,
             initial_guesses=tuple(15.0 * 0.73**k for k in range(22)),
             model_form_sigma=0.03,
+            sharp=True,
         ),
         Parameter(
             *("mu_ratio", "dimensionless", (0.0, 1.0), 1.0), initial_guesses=(1.0,), costly=True

@@ -17,10 +17,10 @@ from rr_opt.motion.floor_motion import free_joint_of
 from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
-_LONGEST, _SHARP, _STIFF = 0.012, 0.003, 0.0004
-"""Longest step, s: in general, with dry friction, and with wheels that slip. With steps four times
-as long as the last, a fast robot whose wheels hold is off by 0.5 mm within 5 s, and one that slides
-by 1 to 20 mm."""
+_LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0015, 0.0004
+"""Longest step, s: in general, with dry friction, with wheels that creep, and with wheels that
+slide. With steps four times as long as the last, a fast robot whose wheels hold is off by 0.5 mm
+within 5 s, and one that slides by 1 to 20 mm."""
 _COARSER = 4
 """Steps of wheels that slip which derivatives take as one: twice as many, and those across the
 onset of sliding are off by a factor."""
@@ -209,7 +209,7 @@ def drive_slopes(
     if not moving:
         return None
     here = drives.of(run, given, effects)
-    steps = steps_of(here, t, lateness(given, effects), **grain(effects))
+    steps = steps_of(here, t, lateness(given, effects), **grain(given, effects))
 
     def path_at(values: Mapping[str, float]) -> DrivePath:
         # On the very steps used for prediction, with one rate per step where dphi jumps, so that a
@@ -246,13 +246,18 @@ def joint_of(given: Mapping[str, float]) -> FreeJoint:
     return free_joint_of(lambda parameters: values_of(given, parameters))
 
 
-def grain(effects: Sequence[str]) -> Grain:
+def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
     """Whether some states are stiff, and the longest step, s."""
     every = [CATALOGUE[name] for name in effects]
-    if any(one.stiff for one in every):
-        return {"stiff": True, "longest": _STIFF}
-    sharp = any(one.near_discontinuous for one in every)
-    return {"stiff": False, "longest": _SHARP if sharp else _LONGEST}
+    sharpest = ((one, q) for one in every for q in one.parameters if q.sharp)
+    stiff, longest = any(one.stiff for one in every), _LONGEST
+    if any(given[f"{one.name}.{q.name}"] != q.neutral for one, q in sharpest):
+        longest = _SHARPEST
+    elif stiff:
+        longest = _STIFF
+    elif any(one.near_discontinuous for one in every):
+        longest = _SHARP
+    return {"stiff": stiff, "longest": longest}
 
 
 def neighbours(

@@ -22,6 +22,7 @@ from rr_opt.design.maximize_speed import Optimum
 from rr_opt.effects import CATALOGUE
 from rr_opt.effects.effect import Port
 from rr_opt.machines.racer.drive import drive_path, grain, steps_of
+from rr_opt.machines.racer.parameters import effect_values
 from rr_opt.machines.racer.simulation import V, driven
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.gait import Gait, SineGait
@@ -80,7 +81,8 @@ def driven_speed(robot: Robot, gait: Gait) -> DrivenSpeed:
     system, motion = driven(effects)
     drive = servo_drive(robot, gait)
     t = np.linspace(0.0, gait.period, (_OF_SLIP if motion.slips else _SAMPLES) + 1)
-    path = drive_path(drive, steps_of(drive, t, 0.0, **grain(effects)), 0.0)
+    fine = grain(effect_values(robot.physics), effects)
+    path = drive_path(drive, steps_of(drive, t, 0.0, **fine), 0.0)
     p = values_of(robot, motion.parameters)
     tried = _HEADINGS if _depends(motion, slice(2, 3)) else 1
     headings = 2 * math.pi * np.arange(tried) / tried

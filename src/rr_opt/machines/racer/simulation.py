@@ -17,6 +17,7 @@ from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer.drive import (
     Drives,
+    Grain,
     drive_path,
     drive_slopes,
     grain,
@@ -113,6 +114,7 @@ class _DrivenRun:
     given: Mapping[str, float]
     drive: Drive
     late: float
+    grain: Grain
     effects: tuple[str, ...]
     path: DrivePath
 
@@ -183,13 +185,14 @@ class Simulator:
         if kept and kept.given is given and kept.effects == effects:
             return kept
         drive, late = self.drives.of(run, given, effects), lateness(given, effects)
-        as_before = kept and (kept.late, kept.effects) == (late, effects)
+        fine = grain(given, effects)
+        as_before = kept and (kept.late, kept.grain, kept.effects) == (late, fine, effects)
         if kept and as_before and kept.drive is drive:
             path = kept.path
         else:
-            steps = steps_of(drive, self._data[run].t, late, **grain(effects))
+            steps = steps_of(drive, self._data[run].t, late, **fine)
             path = drive_path(drive, steps, late)
-        self._driven[run] = _DrivenRun(given, drive, late, effects, path)
+        self._driven[run] = _DrivenRun(given, drive, late, fine, effects, path)
         return self._driven[run]
 
     def drive_slopes(
