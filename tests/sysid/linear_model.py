@@ -163,7 +163,9 @@ def stacked(problem, runs, states, values):
         made = model.simulate(
             [Request(one, moved, s) for one, s in zip(parts, begun, strict=True)], ()
         )
-        rows = [one.residuals.ravel() for one in made] + [weak * s for s in begun]
+        rows = [one.residuals.ravel() for one in made]
+        # Of a run's first state.
+        rows += [weak * s for one, s in zip(parts, begun, strict=True) if one.first == 0]
         for k in range(len(parts) - 1):
             if parts[k].run == parts[k + 1].run:
                 rows.append(tight * (made[k].end - begun[k + 1]))

@@ -37,5 +37,5 @@ def test_as_by_brute_force(q, prior, least):
     units = np.tile(model.state_scale(()), 4)
     log = np.linalg.slogdet((X * units).T @ (X * units))[1]
     log += 2 * 3 * np.sum(np.log(np.hypot(q, least / model.state_scale(()))))
-    log += 4 * 2 * np.log(0.7 / 0.02) if np.isfinite(prior[1]) else 0.0
+    log += 2 * np.log(0.7 / 0.02) if np.isfinite(prior[1]) else 0.0
     assert found.log == pytest.approx(log, rel=1e-6)

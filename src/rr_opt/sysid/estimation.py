@@ -534,6 +534,7 @@ def solve(
     evidences = linear.evidences(problem.q)
     for _ in range(steps):
         least = max(tolerance, relative * (here.cost - sum(problem.degrees.values())))
+        stretched = trust.stretch > 1.0
         better, expected = _stepped(linear, evidences, here, trust, least)
         if better is None:
             converged = True
@@ -544,7 +545,7 @@ def solve(
             # At the edge of where the model can be simulated.
             break
         here, linear, evidences = better, there, found
-        if gain < least:
+        if gain < least and not stretched:
             converged = True
             break
         lacking = _deviance(problem, evidences, here.u) - enough

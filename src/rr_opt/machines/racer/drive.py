@@ -17,7 +17,7 @@ from rr_opt.motion.floor_motion import free_joint_of
 from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
-_LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0015, 0.0004
+_LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0008, 0.0004
 """Longest step, s: in general, with dry friction, with wheels that creep, and with wheels that
 slide. With steps four times as long as the last, a fast robot whose wheels hold is off by 0.5 mm
 within 5 s, and one that slides by 1 to 20 mm."""
