@@ -196,8 +196,7 @@ def _angle(problem: Problem) -> list[str]:
         )
     reach = reach_before_singularity(robot, limits.singularity)
     if needed > reach * _ROUNDING:
-        S1 = 1e3 * (robot.platform1.c * math.cos(needed) + robot.platform2.c)
-        widest = 1e3 * (robot.platform1.c + robot.platform2.c)
+        S1, widest = (1e3 * float(robot.S1(phi)) for phi in (needed, 0.0))
         asked = f"Limit `singularity` (S1 = c1 cos phi + c2 >= {1e3 * limits.singularity:.6g} mm"
         if math.isinf(reach):
             less = f"With {of} it falls to {S1:.6g} mm: ask for a margin of at most that."

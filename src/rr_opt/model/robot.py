@@ -9,6 +9,10 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rr_opt.array import Array
 from rr_opt.model.fields import SI, data, declared
 from rr_opt.model.parameters import SYMBOLS
 from rr_opt.units import Number
@@ -108,8 +112,12 @@ class Robot:
         """Of both platforms, kg."""
         return self.platform1.m + self.platform2.m
 
+    def S1(self, phi: ArrayLike) -> Array:
+        """c1 cos phi + c2 at an angle, m: 0 in a singular posture."""
+        return self.platform1.c * np.cos(phi) + self.platform2.c
+
     @property
     def singular_angle(self) -> float:
-        """The smallest |phi| at which S1 = c1 cos phi + c2 vanishes, rad; inf if never."""
+        """The smallest |phi| at which S1 vanishes, rad; inf if never."""
         ratio = self.platform2.c / self.platform1.c
         return math.acos(-ratio) if ratio <= 1.0 else math.inf

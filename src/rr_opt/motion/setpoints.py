@@ -126,12 +126,11 @@ def excess(robot: Robot, limits: Limits, gait: Gait) -> float:
     """
     joint = servo_made(robot, gait)
     steady = steady_cycle(robot, joint)
-    S1 = robot.platform1.c * math.cos(joint.peak_angle) + robot.platform2.c
     reached = {
         "angle": joint.peak_angle,
         "rate": joint.peak_rate,
         "torque": peak_torque(steady),
-        "singularity": S1,
+        "singularity": float(robot.S1(joint.peak_angle)),
         "grip": max(grip_needed(steady, robot)),
     }
     return limits.worst(reached)[1]

@@ -87,8 +87,8 @@ def peaks(problem: Problem, command: Command, driven: Trajectory) -> dict[str, t
         inputs = [driven.v[None, first:last], *path[:, None], np.tile(p[:, None], len(t))]
         loads = dynamics.motion(*inputs)[3], *dynamics.grip(*inputs)
         torque, *grips = (np.abs(np.asarray(load)).ravel() for load in loads)
-        S1 = robot.platform1.c * np.cos(path[0]) + robot.platform2.c
-        sizes = [("angle", np.abs(path[0])), ("rate", np.abs(path[1])), ("singularity", -S1)]
+        sizes = [("angle", np.abs(path[0])), ("rate", np.abs(path[1]))]
+        sizes.append(("singularity", -robot.S1(path[0])))
         for name, size in (*sizes, ("torque", torque), *(("grip", grip) for grip in grips)):
             k = int(size.argmax())
             value, when = float(size[k]), float(t[k])

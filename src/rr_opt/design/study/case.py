@@ -215,7 +215,7 @@ def reached(robot: Robot, steady: SteadyCycle) -> dict[str, float]:
         "angle": gait.peak_angle,
         "rate": gait.peak_rate,
         "torque": peak_torque(steady),
-        "singularity": robot.platform1.c * math.cos(gait.peak_angle) + robot.platform2.c,
+        "singularity": float(robot.S1(gait.peak_angle)),
         "grip": max(grip_needed(steady, robot)),
         "power": work.power,
         "cost_of_transport": work.cost_of_transport,

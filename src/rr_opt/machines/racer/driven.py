@@ -99,12 +99,11 @@ def driven_speed(robot: Robot, gait: Gait) -> DrivenSpeed:
     grip, values = own.grip.map(len(t)), own.values(robot)
     ahead = [speeds(run[:, :: path.each], drives, p)[0, :] for run in runs]
     needed = [np.abs(np.array(grip(v, phi, rate, bend, values))) for v in ahead]
-    S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
     reached = {
         "angle": float(np.abs(phi).max()),
         "rate": linear_servo(robot).response_to(gait).peak_rate,
         "torque": float(max(at_samples)),
-        "singularity": float(S1.min()),
+        "singularity": float(robot.S1(phi).min()),
         "grip": float(max(one.max() for one in needed)),
     }
     speeds = tuple(cycle.speed for cycle in cycles)

@@ -104,13 +104,12 @@ def _plans(racer: RacerModel) -> list[_Plan]:
     """Every feasible gait of the robot, for as long as the existing recordings."""
     robot, runs = racer.experiment.robot, racer.experiment.runs
     seconds = round(float(np.median([run.recording.t[-1] - run.recording.t[0] for run in runs])))
-    c1, c2 = robot.platform1.c, robot.platform2.c
     out = []
     for amplitude, period, offset in itertools.product(_AMPLITUDES, _PERIODS, _OFFSETS):
         gait = SineGait(amplitude=amplitude, period=period, offset=offset)
         peak = amplitude + offset
         fierce = amplitude * (2 * math.pi / period) ** 2 > FIERCEST
-        folded = c1 * math.cos(min(peak, math.pi)) + c2 < CLEARANCE * (c1 + c2)
+        folded = robot.S1(min(peak, math.pi)) < CLEARANCE * robot.S1(0.0)
         limits = robot.servo
         beyond = peak > limits.angle_limit or gait.peak_rate > limits.rate_limit
         if not (fierce or folded or beyond):
