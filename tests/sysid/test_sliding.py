@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from rr_opt.machines.racer.grip import slips
+from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.machines.racer.simulation import side_speeds
+from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import fitted
 from rr_opt.sysid.estimation import solve
 from rr_opt.sysid.model import Choice, Request, Segment
-from tests.sysid.made_up import GAITS, ROBOT, base_of, with_effect
+from tests.sysid.made_up import GAITS, ROBOT, base_of, experiment, whole, with_effect
 
 SLIDES = {"lateral_slip.mu": 0.012}
 
@@ -74,6 +76,22 @@ def test_a_segment_may_begin_while_the_wheels_slide(sliding):
         change = (up.residuals - down.residuals) / (2 * step)
         assert np.abs(change).max() > 1.0
         assert np.sqrt(linear.gram[k, k]) == pytest.approx(np.linalg.norm(change), rel=0.1)
+
+
+@pytest.mark.parametrize("mu", [0.012, 0.02, 0.05])
+def test_derivatives_across_the_onset_of_sliding(mu):
+    model = RollerRacer(experiment(((SineGait(0.7, 1.0, 0.2), "running"),), 5.0, 100.0))
+    effects, start = ("lateral_slip",), np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
+
+    def request(mu: float) -> Request:
+        values = {"lateral_slip.creep_compliance": 6e-4, "lateral_slip.mu": mu}
+        return Request(whole(model, 0), values, start)
+
+    (linear,) = model.linearise([request(mu)], effects, ("lateral_slip.mu",))
+    step = 1e-4 * mu
+    up, down = model.simulate([request(mu + step), request(mu - step)], effects)
+    by_mu = np.linalg.norm(up.residuals - down.residuals) / (2 * step)
+    assert np.sqrt(linear.gram[6, 6]) == pytest.approx(by_mu, rel=0.25)
 
 
 def test_one_of_the_grips_to_begin_with_is_near_the_true_one(sliding):

@@ -213,12 +213,10 @@ def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
 def _tested(problem: FitProblem, parent: Fit) -> FitProblem:
     """The problem restricted to the few runs that the parent explains worst; all, if it explains
     each of them to within chance."""
-    known = parent.evidences
-    worst = sorted(problem.by_run, key=lambda run: -known[run].excess)
-    significant = [
-        run for run in worst if known[run].excess > 2 * math.sqrt(2 * known[run].samples)
-    ]
-    runs = significant[: SETTINGS.trial_runs] or worst
+    worst = sorted(problem.by_run, key=lambda run: -parent.evidences[run].excess)
+    most = parent.evidences[worst[0]]
+    significant = most.excess > 2 * math.sqrt(2 * most.samples)
+    runs = worst[: SETTINGS.trial_runs] if significant else worst
     return replace(problem, segments=tuple(s for s in problem.segments if s.run in runs))
 
 

@@ -761,13 +761,17 @@ def initial(
 
 def whole_runs(fit: Fit) -> Fit:
     """The same quantities fitted by least squares over whole runs, or over windows as long as the
-    machine can be predicted: how well the model predicts unaided. First over segments with hardly
-    any process noise, as whole runs have more minima."""
+    machine can be predicted: how well the model predicts unaided.
+
+    If these are not the fit's own segments, first over those with hardly any process noise, as
+    whole runs have more minima.
+    """
     tight, share = SETTINGS.least_process_noise, SETTINGS.known_share
-    if fit.problem.q > tight:
+    single, states = _whole(fit, fit.problem.by_run, fit.values)
+    if fit.problem.q > tight and single.segments != fit.problem.segments:
         joined = replace(fit.problem, q=tight, robust=False)
         fit = _known(joined, fit.states, fit.values, share, fit.linear)
-    single, states = _whole(fit, fit.problem.by_run, fit.values)
+        single, states = _whole(fit, fit.problem.by_run, fit.values)
     return _known(single, states, fit.values, share)
 
 

@@ -35,9 +35,8 @@ from rr_opt.motion.steady_cycle import Cycle, cycle_of
 from rr_opt.outcome import NotConvergedError
 from rr_opt.sysid.shooting import DrivePath, System, predict
 
-_SAMPLES, _OF_SLIP = 256, 1024
-"""Samples per period, with at least one step between two; more with slip, as wheels that hold
-chatter if steps are long against the time in which a slip dies out."""
+_SAMPLES = 256
+"""Samples per period, with at least one step between two."""
 _HEADINGS = 8
 _ROUNDS, _REPEATS = 500, 1e-7
 """Most periods, and the relative change of v over one that counts as none."""
@@ -80,7 +79,7 @@ def driven_speed(robot: Robot, gait: Gait) -> DrivenSpeed:
     robot = replace(robot, physics=tuple(u for u in robot.physics if u.name in effects))
     system, motion = driven(effects)
     drive = servo_drive(robot, gait)
-    t = np.linspace(0.0, gait.period, (_OF_SLIP if motion.slips else _SAMPLES) + 1)
+    t = np.linspace(0.0, gait.period, _SAMPLES + 1)
     fine = grain(effect_values(robot.physics), effects)
     path = drive_path(drive, steps_of(drive, t, 0.0, **fine), 0.0)
     p = values_of(robot, motion.parameters)

@@ -8,7 +8,7 @@ certain value that a recording can narrow. Both are linearised: every feasible g
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -38,6 +38,8 @@ _TOLD_APART = 0.3
 _NARROWER = 1.1
 """Factor by which a recording has to narrow an interval to be worthwhile."""
 
+_AT_ONCE = 8
+"""Plans that are simulated together."""
 _STATE_STEPS = 3
 """Gauss-Newton steps for the initial states, as a poor guess of them counts as a difference."""
 
@@ -52,10 +54,13 @@ def next_experiment(
     plans = _plans(racer)
     if not plans:
         return None
-    planned, begun = _planned(racer, best, plans)
+    # A few at a time: all steps of all plans would be large.
+    batches = [plans[k : k + _AT_ONCE] for k in range(0, len(plans), _AT_ONCE)]
     if rival is not None:
         name, fit = rival
-        apart = _separations(planned, fit)
+        apart = np.concatenate(
+            [_separations(_planned(racer, best, some)[0], fit) for some in batches]
+        )
         k = int(np.argmax(apart))
         if apart[k] > _TOLD_APART:
             gait, both = plans[k].gait, words_of(f"{_names(best)} and {name}")
@@ -65,7 +70,7 @@ def next_experiment(
                 f"after refitting, {both} would differ by {apart[k]:.1f} sigma."
             )
             return _answer(plans[k], (_names(best), name), float(apart[k]), sentence)
-    known = _narrowed(planned, best, begun)
+    known = _narrowed(best, (_planned(racer, best, some) for some in batches))
     if known is None:
         return None
     k, quantity, factor, apart = known
@@ -217,14 +222,19 @@ def _separations(planned: RacerModel, rival: Fit) -> Array:
 
 
 def _narrowed(
-    planned: RacerModel, best: Fit, begun: Mapping[Segment, Array]
+    best: Fit, planned: Iterable[tuple[RacerModel, Mapping[Segment, Array]]]
 ) -> tuple[int, str, float, float] | None:
-    """The plan that most narrows a value: the least certain one that any plan narrows. Its run, the
-    value's name, the factor, and the size of its effect in the recording, RMS in sigma."""
+    """The plan that most narrows a value: the least certain one that any plan narrows. Its index,
+    the value's name, the factor, and the size of its effect in the recording, RMS in sigma."""
     if not best.u.size:
         return None
-    _, plans = _linearised(planned, best, begun)
-    added = {run: H for run, (H, value, _) in plans.items() if np.isfinite(value)}
+    added: dict[int, Array] = {}
+    sizes: list[int] = []
+    for some, begun in planned:
+        _, plans = _linearised(some, best, begun)
+        known = ((run, H) for run, (H, value, _) in plans.items() if np.isfinite(value))
+        added |= {len(sizes) + run: H for run, H in known}
+        sizes += [run.values.size for run in some.runs]
     if not added:
         return None
     H0, _, _ = best.information()
@@ -242,6 +252,6 @@ def _narrowed(
         run = min(after, key=lambda run: after[run][k])
         factor = float(before[k] / after[run][k])
         if factor >= _NARROWER:
-            shown = math.sqrt(added[run][k, k] / planned.runs[run].values.size) * float(before[k])
+            shown = math.sqrt(added[run][k, k] / sizes[run]) * float(before[k])
             return run, quantities[k].name, factor, shown
     return None

@@ -114,7 +114,8 @@ def linearised_inputs(
     pieces  into which a segment is cut: inputs act in one of them each, a piece's k side by side;
             their rates of change are those of the inputs before the cut
 
-    One step from sample to sample is fine enough for the response to a push.
+    The response to a push takes one step from sample to sample, which is fine enough but where the
+    wheels slide.
     """
     simulator = racer.simulator
     mechanical = simulator.every(effects)
