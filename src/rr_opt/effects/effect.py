@@ -108,7 +108,7 @@ class Effect:
                 measurement
 
     For predictions and fits:
-    stiff               it lets the axles slip, which they stop doing within a step
+    stiff               it lets the axles slip, which they stop doing within milliseconds
     near_discontinuous  its force all but jumps with the speed, so predictions need short steps
     differentiable      the prediction is differentiable in its parameters where it vanishes
     candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,

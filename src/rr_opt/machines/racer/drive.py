@@ -22,8 +22,8 @@ _LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0008, 0.0004
 slide. With steps four times as long as the last, a fast robot whose wheels hold is off by 0.5 mm
 within 5 s, and one that slides by 1 to 20 mm."""
 _COARSER = 2
-"""Steps of wheels that slip which derivatives take as one: across the onset of sliding these are off
-by a tenth or two; with twice as many, by a factor."""
+"""Steps of wheels that slip which derivatives take as one: across the onset of sliding these are
+off by a tenth or two; with twice as many, by a factor."""
 _APART = 1e-6
 """A jump of dphi this near to the end of a step, s, counts as at it."""
 _MOST = 3
