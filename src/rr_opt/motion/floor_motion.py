@@ -10,8 +10,8 @@ holds z = u - g dphi instead of u, which does not need ddphi and does not jump:
 
     zdot = f - (dg/dphi) dphi^2,        u = z + g dphi
 
-Axles that may slip stop slipping within milliseconds. They come to rest at s = 0 and not at some z, so
-there the state holds u itself, and the drive provides the mean of ddphi over a step.
+Axles that may slip stop slipping within milliseconds. They come to rest at s = 0 and not at some z,
+so there the state holds u itself, and the drive provides the mean of ddphi over a step.
 
 While the servo exerts no torque phi is free, and the joint obeys
 
