@@ -198,8 +198,13 @@ class _Servo:
     def play(self, before: Array, states: Array) -> _Play:
         """From phi, dphi and z before, and the states after each step."""
         phi, dphi = np.vstack([before[:2], states[:, :2]]).T
-        rates = np.array([dphi[:-1], dphi[1:]]) - self.rates
-        return _Play(self.gear[0], self.times, phi - self.angle, rates, states[:, 3])
+        lead, rates = phi - self.angle, np.array([dphi[:-1], dphi[1:]]) - self.rates
+        half, _, compliance = self.gear
+        if not compliance:
+            # A rigid stop gives the joint its rate at once.
+            at = np.sign(lead) * (np.abs(lead) >= (1 - 1e-9) * half)
+            rates[0, (at[:-1] != 0) & (at[:-1] == at[1:])] = 0.0
+        return _Play(half, self.times, lead, rates, states[:, 3])
 
 
 def _ends_of_steps(command: Drive) -> tuple[Array, NDArray[np.intp]]:
