@@ -17,8 +17,10 @@ RATE = math.sqrt(9.81 * ML / J)
 T = np.arange(0.0, 6.0, 0.01)
 
 
-def model(about: float, noise: float = 0.0) -> OdeModel:
+def model(about: float, noise: float = 0.0, every: int = 1) -> OdeModel:
+    """With an angle in every so many samples."""
     angle, torque = about + 0.2 * np.sin(3 * T), 0.3 * np.sin(5 * T)
+    angle[np.arange(T.size) % every > 0] = np.nan
     sigma = {"q": 1e-3, "u": noise}
     runs = (MachineRun("one", T, {"u": torque}, {"q": angle}, sigma),)
     nominal = {"J": J, "ml": ML, "b": 0.0}
@@ -38,6 +40,23 @@ def test_upright_errors_grow():
 
 def test_noisy_inputs_move_it():
     assert window(0.0, noise=0.5) < window(0.0, noise=1e-3) == 2.0
+
+
+def test_only_samples_with_data_count_in_what_noisy_inputs_cause():
+    dense, sparse = (model(0.0, noise=0.05, every=every).form_error for every in (1, 5))
+    assert sparse == pytest.approx(dense, rel=0.2)
+
+
+def test_each_rate_of_a_car_is_as_uncertain_as_what_it_moves():
+    names = ("x", "y", "psi")
+    sigma = {"x": 1e-3, "y": 2e-3, "psi": 5e-3}
+    inputs = {"vx": np.ones(T.size), "steering": 0.1 * np.sin(T)}
+    run = MachineRun("one", T, inputs, {name: np.sin(T) for name in names}, sigma)
+    car = machine_named("car")
+    nominal = {one.name: 1.0 for one in car.parameters}
+    one = OdeModel(MachineExperiment(car, nominal, {}, (run,)))
+    add = math.sqrt(3) / one.segment_length
+    assert one.state_scale(()) == pytest.approx([1e-3, 2e-3, 5e-3, 2e-3 * add, 5e-3 * add])
 
 
 def test_a_rate_is_as_uncertain_as_the_window_and_the_noise_say():

@@ -45,6 +45,7 @@ JOINT: dict[str, Any] = {
     "states": ("q", "w"),
     "outputs": (Channel("q", "rad", "the angle", angle=True),),
     "seen": lambda v, _: {"q": v.q},
+    "rate_of": {"w": "q"},
     "start": lambda seen: {"q": seen["q"], "w": seen["q_rate"]},
     "ports": {"friction": ("torque", "N m", "a torque")},
 }

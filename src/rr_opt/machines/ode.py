@@ -190,8 +190,11 @@ class OdeModel:
     def state_scale(self, effects: tuple[str, ...]) -> Array:
         """The noise; for a rate, the change that adds up to as much over a segment."""
         sigma = dict(zip(self.channels, self.runs[0].sigma[0].tolist(), strict=True))
-        rate = math.hypot(*sigma.values()) * math.sqrt(3 / len(sigma)) / self.segment_length
-        return np.array([sigma.get(name, rate) for name in self.machine.states])
+        adds = {
+            state: math.sqrt(3) / self.segment_length * sigma[output]
+            for state, output in self.machine.rate_of.items()
+        }
+        return np.array([{**sigma, **adds}[name] for name in self.machine.states])
 
     def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
         """Zero: none is known."""

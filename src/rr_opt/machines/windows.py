@@ -109,9 +109,10 @@ def stirred(model: Predictable, length: float) -> float:
         for _ in range(_DRAWS):
             moved = model.made(asked, (), {recording: _drawn(run, rng)})
             for (one, _, before), (_, _, after), by in zip(plain, moved, starts, strict=True):
-                off = _known((after.seen - before.seen) * model.recorded(one.segment).weight)
+                weight = model.recorded(one.segment).weight
+                off = _known((after.seen - before.seen) * weight)
                 off -= by @ np.linalg.lstsq(by, off, rcond=None)[0]
-                left, count = left + float(off @ off), count + off.size
+                left, count = left + float(off @ off), count + np.count_nonzero(weight)
     return float(np.sqrt(left / count)) if count else 0.0
 
 

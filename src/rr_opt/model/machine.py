@@ -117,6 +117,7 @@ class Machine:
     states    in order; the last `stiff` of them may be stiff
     rates     (names, add) -> d(state)/dt by name
     seen      (names, add) -> outputs by name
+    rate_of   by state that is no output: the output that it moves
     start     (outputs and their slopes, `q` and `q_rate`, and inputs) -> states where a run begins
     signals   what inputs go through before they drive it, with parameters as its constants
     scales    (parameters, inputs, outputs' rates; RMS each) -> usual sizes for the effects
@@ -136,6 +137,7 @@ class Machine:
     effects: tuple[MachineEffect, ...]
     rates: Callable[[Names, Add], Mapping[str, Any]]
     seen: Callable[[Names, Add], Mapping[str, Any]]
+    rate_of: Mapping[str, str]
     start: Callable[[Mapping[str, float]], Mapping[str, float]]
     scales: Callable[[Mapping[str, float]], Scales]
     ports: Mapping[str, tuple[str, str, str]]

@@ -126,6 +126,7 @@ CAR = Machine(
     ),
     rates=_rates,
     seen=lambda v, _: {"x": v.x, "y": v.y, "psi": v.psi},
+    rate_of={"vy": "y", "r": "psi"},
     start=lambda s: {"x": s["x"], "y": s["y"], "psi": s["psi"], "vy": 0.0, "r": s["psi_rate"]},
     scales=lambda s: {"speed": max(s["vx"], 1e-3)},
     ports={"yaw": ("yaw", "rad/s^2", "a yaw acceleration"),

@@ -18,9 +18,9 @@ from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
 _LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0008, 0.0004
-"""Longest step, s: in general, with dry friction, with wheels that creep, and with wheels that
-slide. With steps four times as long as the last, a fast robot whose wheels hold is off by 0.5 mm
-within 5 s, and one that slides by 1 to 20 mm."""
+"""Longest step, s: in general, with dry friction or where dphi jumps, with wheels that creep, and
+with wheels that slide. With steps four times as long as the last, a fast robot whose wheels hold is
+off by 0.5 mm within 5 s, and one that slides by 1 to 20 mm."""
 _COARSER = 2
 """Steps of wheels that slip which derivatives take as one: across the onset of sliding these are
 off by a tenth or two; with twice as many, by a factor."""
@@ -57,6 +57,8 @@ def steps_of(
     Not with stiff states: there the effect of a jump is spread over its step.
     """
     jumps = drive.jumps_within(t[0] + late, t[-1] + late) - late if not stiff else np.zeros(0)
+    if jumps.size:
+        longest = min(longest, _SHARP)
     k = np.searchsorted(t, jumps, side="right") - 1
     inside = (jumps - t[k] > _APART) & (t[k + 1] - jumps > _APART)
     inside[1:] &= np.diff(jumps) > _APART

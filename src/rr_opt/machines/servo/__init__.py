@@ -63,4 +63,7 @@ SERVO = Machine(
     rates=_rates,
     scales=lambda s: {"torque": s["m"] * laws.G * s["l"], "speed": max(s["q_rate"], 1e-3)},
     variables={"w": ("speed", "rad/s"), "q": ("angle", "rad"), "goal": ("set point", "rad")},
+    # A servo that lifts a mass turns back so fast that with twice this, derivatives by friction and
+    # inertia are off by up to a factor of two.
+    step=5e-4,
 )  # fmt: skip
