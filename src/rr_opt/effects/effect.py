@@ -57,8 +57,8 @@ class Parameter:
     fit_upper         a fit goes no higher, for a given operating range
     costly            its terms take as long to evaluate as all others: while it is neutral,
                       predictions leave them out
-    sharp             while it is not neutral, the force bends so sharply with the speed that
-                      predictions need the shortest steps
+    sharp             while it is not neutral, forces or the drive bend so sharply that predictions
+                      need shorter steps
     """
 
     name: str

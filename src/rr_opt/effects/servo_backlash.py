@@ -349,7 +349,9 @@ EFFECT = Effect(
             *("width", "rad", (0.0, 0.5), 0.02), initial_guesses=(0.5,), model_form_sigma=0.01
         ),
         Parameter("joint_friction", "N m", (0.0, 5.0), 0.05, initial_guesses=(0.3, 2.0)),
-        Parameter("compliance", "rad/(N m)", (0.0, 2.0), 0.05, initial_guesses=(0.3,)),
+        Parameter(
+            *("compliance", "rad/(N m)", (0.0, 2.0), 0.05), initial_guesses=(0.3,), sharp=True
+        ),
     ),
     sentence="There is play between the servo and the platform it turns.",
     actuate=_actuate,

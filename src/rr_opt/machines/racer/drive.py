@@ -18,7 +18,7 @@ from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
 _LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0008, 0.0004
-"""Longest step, s: in general, with dry friction or where dphi jumps, with wheels that creep, and
+"""Longest step, s: in general, with dry friction or a gear that gives, with wheels that creep, and
 with wheels that slide. With steps four times as long as the last, a fast robot whose wheels hold is
 off by 0.5 mm within 5 s, and one that slides by 1 to 20 mm."""
 _COARSER = 2
@@ -57,8 +57,6 @@ def steps_of(
     Not with stiff states: there the effect of a jump is spread over its step.
     """
     jumps = drive.jumps_within(t[0] + late, t[-1] + late) - late if not stiff else np.zeros(0)
-    if jumps.size:
-        longest = min(longest, _SHARP)
     k = np.searchsorted(t, jumps, side="right") - 1
     inside = (jumps - t[k] > _APART) & (t[k + 1] - jumps > _APART)
     inside[1:] &= np.diff(jumps) > _APART
@@ -251,10 +249,10 @@ def joint_of(given: Mapping[str, float]) -> FreeJoint:
 def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
     """Whether some states are stiff, and the longest step, s."""
     every = [CATALOGUE[name] for name in effects]
-    sharpest = ((one, q) for one in every for q in one.parameters if q.sharp)
+    sharp = ((one, q) for one in every for q in one.parameters if q.sharp)
     stiff, longest = any(one.stiff for one in every), _LONGEST
-    if any(given[f"{one.name}.{q.name}"] != q.neutral for one, q in sharpest):
-        longest = _SHARPEST
+    if any(given[f"{one.name}.{q.name}"] != q.neutral for one, q in sharp):
+        longest = _SHARPEST if stiff else _SHARP
     elif stiff:
         longest = _STIFF
     elif any(one.near_discontinuous for one in every):
