@@ -84,11 +84,13 @@ def steps_of(
 
 def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -> DrivePath:
     """The drive over the steps; with `mean`, dphi is constant over each step."""
+    if steps.stiff:
+        return _averaged(drive, steps, late)
     edges = steps.edges + late
     h = np.diff(edges)
     at_edges, middle = drive.at(edges)[:2], drive.at(edges[:-1] + h / 2)[:2]
     nodes = np.stack([at_edges[:, :-1], middle, at_edges[:, 1:]], axis=1)
-    if mean or (steps.stiff and not drive.smooth):
+    if mean:
         nodes[1] = np.diff(at_edges[0]) / h
     elif not drive.smooth:
         # Evaluated inside the step, as dphi may jump at its ends.
@@ -99,21 +101,34 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
         begins, ends = np.flatnonzero(near[:-1]), np.flatnonzero(near[1:])
         nodes[1, 0, begins] = drive.at(edges[begins] + _APART / 10)[1]
         nodes[1, 2, ends] = drive.at(edges[ends + 1] - _APART / 10)[1]
-    at = at_edges[:, :: steps.each]
-    if steps.stiff:
-        acceleration = np.diff(at_edges[1]) / h
-        nodes = np.concatenate([nodes, np.tile(acceleration, (1, 3, 1))])
-        at = np.vstack([at, np.append(acceleration, acceleration[-1])[:: steps.each]])
     k = int(np.searchsorted(edges, 0.0)) - 1
     if drive.rest and not mean and 0 <= k < h.size:
         # The command starts in this step, where dphi may jump: phi is a straight line, so that dphi
         # amounts to the change of phi.
-        (begin, end), (before, after) = at_edges[:, k : k + 2]
-        rate = (end - begin) / h[k]
-        nodes[0, 1, k], nodes[1, :, k] = (begin + end) / 2, rate
-        if steps.stiff:
-            nodes[2, ::2, k] = 2 * (rate - before) / h[k], 2 * (after - rate) / h[k]
-    return DrivePath(h, nodes, at, steps.each, min(_COARSER, steps.each) if steps.stiff else 1)
+        begin, end = at_edges[0, k : k + 2]
+        nodes[0, 1, k], nodes[1, :, k] = (begin + end) / 2, (end - begin) / h[k]
+    return DrivePath(h, nodes, at_edges[:, :: steps.each], steps.each)
+
+
+def _averaged(drive: Drive, steps: Steps, late: float) -> DrivePath:
+    """With ddphi: dphi at an edge is its mean over half a step to either side, and changes linearly
+    in between. So a jump of dphi counts wherever it falls, and moves steadily with what moves it.
+    """
+    edges = steps.edges + late
+    h = np.diff(edges)
+    halves = np.concatenate([[edges[0] - h[0] / 2], edges[:-1] + h / 2, [edges[-1] + h[-1] / 2]])
+    at_edges, middle = drive.at(edges), drive.at(halves)[0]
+    rate = np.diff(middle) / np.diff(halves)
+    acceleration = np.diff(rate) / h
+    nodes = np.array(
+        [
+            [at_edges[0, :-1], middle[1:-1], at_edges[0, 1:]],
+            [rate[:-1], (rate[:-1] + rate[1:]) / 2, rate[1:]],
+            [acceleration] * 3,
+        ]
+    )
+    at = np.vstack([at_edges[:2], np.append(acceleration, acceleration[-1])])[:, :: steps.each]
+    return DrivePath(h, nodes, at, steps.each, min(_COARSER, steps.each))
 
 
 Made = tuple[int, tuple[tuple[str, tuple[tuple[str, float], ...]], ...], FreeJoint | None]
