@@ -63,6 +63,14 @@ def plant(path, record=True):
         path.with_suffix(".sha256").write_text(f"{digest}  {path.name}\n")
 
 
+def test_a_source_given_as_text_is_kept_under_its_key(cache):
+    def written():
+        raise AssertionError("a cached library needs no source")
+
+    for source, make in ((SOURCE, True), (written, False)):
+        assert library(source, FLAGS, make=make, key="what it is made from").answer() == 42
+
+
 def test_what_was_compiled_is_found_again(compiled):
     assert answer(make=False) == 42
     for path in (compiled.parent, compiled, compiled.with_suffix(".sha256")):

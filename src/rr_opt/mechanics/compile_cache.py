@@ -45,7 +45,7 @@ def library(
     if compiler is None or not hasattr(os, "geteuid"):
         return None
     if isinstance(source, str):
-        key = source
+        key = key or source
     key = "\n".join((key, *compiler, *flags, _processor()))
     name = hashlib.sha256(key.encode()).hexdigest()[:32] + ".so"
     for folder in (_user_folder, _process_folder) if make else (_user_folder,):

@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -147,8 +147,7 @@ class Data:
         return float(self.t[-1] - self.t[0])
 
 
-@dataclass(frozen=True)
-class Segment:
+class Segment(NamedTuple):
     """A part of a run: its data are the samples first <= k < until, and it is simulated up to
     sample `last`, where the next segment begins."""
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.parameters import values_of
-from rr_opt.machines.racer.simulation import driven
+from rr_opt.machines.racer.simulation import speeds_of
+from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.mechanics.kane import equations
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, wheel_loads
 from rr_opt.motion.dynamics import assembled
@@ -23,7 +24,7 @@ _FRACTIONS = (0.95, 0.6, 0.2, 0.03)
 
 
 @lru_cache
-def _needed() -> ca.Function:
+def _needed() -> ArrayFunction:
     """(v, phi, dphi, vdot, ddphi, p) -> side force over load of both axles (2,)."""
     assembly = assembled((), for_prediction=True)
     robot = assembly.mechanism
@@ -33,25 +34,25 @@ def _needed() -> ca.Function:
     sides = ca.substitute(kane.needed[1:3], held, ca.SX.zeros(4))
     grip = ca.vertcat(sides[0] / (2 * loads[1]), sides[1] / (2 * loads[2]))
     inputs = [robot.speeds[0], robot.phi, robot.speeds[3], kane.udot[0], kane.udot[3], assembly.p]
-    return ca.Function("grip_needed", inputs, [grip])
+    return over_arrays(ca.Function("grip_needed", inputs, [grip]))
 
 
 def grip_needed(racer: RacerModel, fit: Fit) -> float:
     """The largest side force over load of an axle that does not slip, over all recordings."""
     simulator = racer.simulator
-    _, motion = driven(simulator.every(fit.effects))
-    given = simulator.given(fit.values)
+    speeds, given = speeds_of(simulator.every(fit.effects)), simulator.given(fit.values)
     plain = values_of(given, ROBOT_PARAMETERS)
     worst = 0.0
-    for request in fit.problem.requests(fit.values, fit.states):
+    requests = fit.problem.requests(fit.values, fit.states)
+    paths = simulator.paths(requests, fit.effects)
+    for request, (path, made, p, _) in zip(requests, paths, strict=True):
         t = racer.runs[request.segment.run].t[request.segment.span]
         if t.size < 3:
             continue
-        ((path, made, p, _),) = simulator.paths([request], fit.effects)
-        v = np.array(motion.speeds.map(t.size)(made.states[:, :: path.each], path.at, p))[0]
+        v, *_ = speeds(*made.states[:, :: path.each], *path.at, *p)
         phi, dphi = path.at[:2]
         rates = np.gradient(v, t), np.gradient(dphi, t)
-        grip = _needed().map(t.size)(v, phi, dphi, *rates, plain)
+        grip = _needed()(v, phi, dphi, *rates, *plain)
         # A single sample, as where the servo's rate jumps, is not what the wheels feel.
         worst = max(worst, float(np.nanquantile(np.abs(np.array(grip)), 0.99)))
     return worst

@@ -10,7 +10,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from rr_opt.array import Array
 from rr_opt.machines.racer.model import RacerModel
-from rr_opt.machines.racer.simulation import driven
+from rr_opt.machines.racer.simulation import speeds_of
+from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.model import Request, Segment
 from rr_opt.sysid.shooting import DrivePath, Path
@@ -61,17 +62,16 @@ def _observed(
     p: Array,
 ) -> Along:
     mechanical = racer.simulator.every(effects)
-    _, motion = driven(mechanical)
     data = racer.runs[segment.run]
     t = data.t[segment.span]
     states = made.states[:, :: path.each]
     # Beside the joint's pose, not that of the marker or with the capture system's zeros.
     pose, rate = _smooth(t, states[:3].T, data.values[segment.span, :3] - made.seen[:, :3])
-    _, s1, s2, _ = np.array(motion.speeds.map(t.size)(states, path.at, p))
+    _, s1, s2, _ = speeds_of(mechanical)(*states, *path.at, *p)
     phi, dphi = path.at[:2]
     v = rate[0] * np.cos(pose[2]) + rate[1] * np.sin(pose[2])
-    u = np.array(_rolling(mechanical).map(t.size)(np.array([v, s1, s2, dphi]), phi, p))
-    places = np.array(_places(mechanical).map(t.size)(pose, phi, p)).reshape(4, 2, t.size)
+    u = np.array(_rolling(mechanical)(v, s1, s2, dphi, phi, *p))
+    places = np.array(_places(mechanical)(*pose, phi, *p)).reshape(4, 2, t.size)
     x, y, psi = pose
     return Along(t, x, y, psi, u, places)
 
@@ -100,20 +100,20 @@ def _parabolas(y: Array, half: int, step: float) -> tuple[Array, Array]:
 
 
 @lru_cache
-def _rolling(effects: tuple[str, ...]) -> ca.Function:
+def _rolling(effects: tuple[str, ...]) -> ArrayFunction:
     """(speeds, phi, p) -> the rolling speeds of the wheels (4,), m/s."""
     assembly = assembled(effects, for_prediction=True)
     robot = assembly.mechanism
     rolling = ca.vertcat(*(robot.rolling_speed(wheel) for wheel in robot.wheels))
-    return ca.Function("rolling", [robot.speeds, robot.phi, assembly.p], [rolling])
+    return over_arrays(ca.Function("rolling", [robot.speeds, robot.phi, assembly.p], [rolling]))
 
 
 @lru_cache
-def _places(effects: tuple[str, ...]) -> ca.Function:
+def _places(effects: tuple[str, ...]) -> ArrayFunction:
     """(pose, phi, p) -> x, y of the wheels on the floor, one wheel after the other (8,), m."""
     assembly = assembled(effects, for_prediction=True)
     robot = assembly.mechanism
     places = ca.vertcat(
         *(robot.floor_position(wheel.platform, wheel.point) for wheel in robot.wheels)
     )
-    return ca.Function("places", [robot.pose, robot.phi, assembly.p], [places])
+    return over_arrays(ca.Function("places", [robot.pose, robot.phi, assembly.p], [places]))

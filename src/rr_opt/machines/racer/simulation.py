@@ -26,6 +26,7 @@ from rr_opt.machines.racer.drive import (
     steps_of,
 )
 from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, values_by, values_of
+from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.mechanics.drive import Drive
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS
 from rr_opt.model.experiment import Run
@@ -49,6 +50,12 @@ def driven(
     motion = floor_motion(effects)
     rates = _without(motion, idle) if idle else motion.rates
     return System(rates, motion.observed, stiff_states(motion), lasts=True), motion
+
+
+@lru_cache
+def speeds_of(effects: tuple[str, ...]) -> ArrayFunction:
+    """The speeds of `FloorMotion`, over arrays."""
+    return over_arrays(driven(effects)[1].speeds)
 
 
 def _without(motion: FloorMotion, idle: frozenset[str]) -> ca.Function:
