@@ -132,7 +132,7 @@ def fitted(
 
     guesses  initial values of the new quantities. The parameters start from the parent's fit;
              with the best guess also, as a missing effect may have biased that, from their nominal
-             values. The start that is best after one step is continued
+             values. The best after one step are continued, half of them after each further step
     rival    the fit to beat: one that will not beat it is stopped early
     """
     ordered = tuple(sorted(choices))
@@ -148,8 +148,7 @@ def fitted(
         part = {one: states[one] for one in some.segments}
         return estimation.solve(some, values, part, 1, tolerance), states
 
-    def stepped(fit: Fit) -> Fit:
-        steps = SETTINGS.trial_steps
+    def stepped(fit: Fit, steps: int) -> Fit:
         return estimation.solve(some, fit.values, fit.states, steps, tolerance, known=fit.linear)
 
     def deviance(trial: tuple[Fit, object]) -> float:
@@ -161,8 +160,13 @@ def fitted(
     trials[k] = min(trials[k], begun({**plain, **kept, **distinct[k], **unbent}), key=deviance)
     trials.sort(key=deviance)
     before = trials[0][0].deviance
-    trials = [(stepped(fit), states) for fit, states in trials[: SETTINGS.trial_starts]]
-    best, states = min(trials, key=deviance)
+    trials, left = trials[: SETTINGS.trial_starts], SETTINGS.trial_steps
+    while left:
+        # Successive halving (Jamieson and Talwalkar 2016).
+        steps = 1 if len(trials) > 1 else left
+        trials = sorted(((stepped(fit, steps), s) for fit, s in trials), key=deviance)
+        trials, left = trials[: (len(trials) + 1) // 2], left - steps
+    best, states = trials[0]
     gain = (before - best.deviance) / SETTINGS.trial_steps
     begun_with = {**states, **best.states}
     lacking = best.deviance - rival.deviance_of(some.by_run) if rival else -math.inf

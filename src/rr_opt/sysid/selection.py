@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
 
 from rr_opt.formatting import words_of
 from rr_opt.sysid.candidates import Candidate, continued, first, fitted, quantities_of, weights
@@ -40,6 +41,7 @@ class Selection:
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     lookalikes: Sequence[Candidate] = ()
+    _earlier: Mapping[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
     _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
     _plausibles: dict[Candidate, bool] = field(default_factory=dict)
@@ -49,9 +51,16 @@ class Selection:
         self.best = self.tried[()] = self.base
 
     @classmethod
-    def begun(cls, model: MachineModel, base: Candidate, progress: Progress) -> Selection:
-        """A search that has begun with the effects of the drive."""
-        selection = cls(model, base, progress)
+    def begun(
+        cls,
+        model: MachineModel,
+        base: Candidate,
+        progress: Progress,
+        earlier: Mapping[tuple[Choice, ...], Candidate] = MappingProxyType({}),
+    ) -> Selection:
+        """A search that has begun with the effects of the drive; fits start from those of an
+        earlier search."""
+        selection = cls(model, base, progress, _earlier=earlier)
         if not selection.insignificant(base):
             model.prepare([with_all(base.fit)])
         selection.drive()
@@ -60,7 +69,8 @@ class Selection:
     def again(self, noise: Sequence[ChannelNoise]) -> Selection:
         """Start over with other noise."""
         model = self.model.with_noise(noise)
-        return self.begun(model, first(model, self.base.fit.problem.by_run), self.progress)
+        base = first(model, self.base.fit.problem.by_run)
+        return self.begun(model, base, self.progress, self.tried)
 
     def run(self) -> Candidate:
         """Run the search; returns the chosen candidate."""
@@ -144,6 +154,9 @@ class Selection:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
             rival = min((one.fit for one in self.tried.values()), key=lambda fit: fit.deviance)
             begun, nested = [*guesses], self._nested(key)
+            if key in self._earlier:
+                own, values = {q.name for q in quantities_of(self.model, key)}, self._earlier[key]
+                begun = [{q: v for q, v in values.fit.values.items() if q in own}]
             if nested:
                 begun.append({q: nested.fit.values[q] for q in nested.fit.problem.names})
             made = fitted(self.model, key, (parent or self.best).fit, begun, rival)
@@ -179,7 +192,7 @@ class Selection:
         found = [*self._scored(promising, 1)]
         alone = _best(found)
         if self._settled(found):
-            found += self._unscored()
+            found += self._unscored(self.best)
         if not self._settled(found):
             found += self._extended()
         if not self._settled(found):
@@ -191,6 +204,9 @@ class Selection:
         if stuck and alone and alone.predicts_better(self.best):
             found += self._proposed(alone)
         best = _best(found)
+        if best and len(best.choices) > len(self.best.choices) + 1:
+            found += [one for part in self._fewer(best) for one in self._unscored(part)]
+            best = _best(found)
         if best and self._advance(best):
             self.best = best
 
@@ -228,16 +244,17 @@ class Selection:
         for more, guesses in every:
             yield self.fitted((*parent.choices, *more), guesses, parent)
 
-    def _unscored(self) -> Iterator[Candidate]:
+    def _unscored(self, beside: Candidate) -> Iterator[Candidate]:
         """Effects that a score test cannot detect, from their usual size, lest an imitation win."""
         usual = {
             name: {q.name: q.scale for q in info.forms[0].quantities}
             for name, info in self.model.catalogue.items()
-            if not (info.smooth or info.upstream or name in self.best.effects)
+            if not (info.smooth or info.upstream or name in beside.effects)
             and info.named
             and info.forms[0].guesses
         }
-        yield from self._added(((Choice(name),), [guess]) for name, guess in usual.items())
+        asked = (((Choice(name),), [guess]) for name, guess in usual.items())
+        yield from self._added(asked, beside)
 
     def _extended(self) -> Iterator[Candidate]:
         """Each effect in a fuller form."""
