@@ -98,6 +98,33 @@ def test_sliding_wheels_move_as_with_shorter_steps(monkeypatch):
     assert paths[0] == pytest.approx(paths[1], abs=5e-4)
 
 
+JUMPING = {"lateral_slip.mu": 1.0, "servo_rate_limit.rate_limit": 3.0}
+SLIDING = ("lateral_slip", "servo_rate_limit")
+
+
+def test_wheels_that_slide_as_the_rate_jumps_do_not_chatter():
+    model = RollerRacer(experiment(FAST, seconds=10.0, rate=100.0))
+    begin = np.array([0.0, 0.0, 0.3, 0.1, 0.0, 0.0])
+    here, there = (predicted(model, 1, JUMPING, SLIDING, begin * (1 + by)) for by in (0.0, 1e-9))
+    assert there == pytest.approx(here, abs=1e-7)
+
+
+def test_a_jump_of_the_rate_moves_steadily_through_stiff_steps():
+    model = RollerRacer(experiment(FAST, seconds=1.2, rate=100.0))
+    runs, effects = model.simulator, SLIDING
+    nodes = []
+    for limit in np.linspace(3.0, 3.01, 101):
+        given = runs.given({**JUMPING, "servo_rate_limit.rate_limit": limit})
+        nodes.append(runs.drive_path(whole(model, 1), given, effects))
+    rates = np.array([one.nodes[1, 1] for one in nodes])
+    jump = np.abs(np.diff(rates[0])).max()
+    across = np.abs(np.diff(rates, axis=0)).max()
+    assert np.abs(rates[-1] - rates[0]).max() > 0.5 * jump
+    assert across < 0.1 * jump
+    bends = np.array([one.nodes[2, 1] * one.h for one in nodes])
+    assert np.abs(np.diff(bends, axis=0)).max() < 0.1 * jump
+
+
 def test_neutral_parameters_are_left_out_of_what_is_predicted():
     model, effects = RollerRacer(experiment(seconds=3.0)), ("lateral_slip",)
     plain, whole = driven(effects, frozenset({"lateral_slip.mu_ratio"}))[0], driven(effects)[0]

@@ -27,11 +27,11 @@ _FEW, _PAYS = 10_000, 100_000
 """Steps, with derivatives counted fourfold, that take as long as a look into the compile cache,
 and as long as compiling."""
 
-_REST = 1e-12
-"""A stiff state this near to 0 is at rest."""
+_ITERATIONS = 3
+"""Of Newton's method, per stage of an implicit step."""
 
-Slope = Callable[[int, ca.SX], ca.SX]
-"""d(state)/dt at the beginning (0), in the middle (1) or at the end (2) of a step."""
+Slope = Callable[[float, ca.SX], ca.SX]
+"""d(state)/dt after a fraction of a step, 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +39,15 @@ class System:
     """rates(state, drive, p) -> d(state)/dt and seen(state, drive, p) -> channels.
 
     stiff   how many of the last states are stiff, and need an implicit step
+    jumps   whether the drive's rate may jump. Linearised steps would then chatter where friction
+            brings a stiff state to rest, so that the result depends on the last digit of the start
     lasts   whether it serves other recordings too, so that compiling it may pay
     """
 
     rates: ca.Function
     seen: ca.Function
     stiff: int = 0
+    jumps: bool = False
     lasts: bool = False
 
 
@@ -180,8 +183,8 @@ def _sizes(system: System) -> tuple[int, int]:
 
 def _key(system: System) -> str:
     """What the source is written from."""
-    stiff = str(bool(system.stiff))
-    return "\n".join((system.rates.serialize(), system.seen.serialize(), stiff, _writer()))
+    how = f"{bool(system.stiff)} {system.jumps}"
+    return "\n".join((system.rates.serialize(), system.seen.serialize(), how, _writer()))
 
 
 @lru_cache(maxsize=1)
@@ -214,38 +217,64 @@ def _step(system: System) -> ca.Function:
     x, drive, p = system.rates.sx_in()
     h, nodes = ca.SX.sym("h"), ca.SX.sym("nodes", 3 * drive.numel())
     parts = ca.vertsplit(nodes, drive.numel())
-    make = _rosenbrock if system.stiff else _rk4
-    end = make(lambda k, y: system.rates(y, parts[k], p), x, h, system.stiff)
+
+    def rates(when: float, y: ca.SX) -> ca.SX:
+        # The drive is a parabola through its nodes.
+        weights = 2 * (when - 0.5) * (when - 1), 4 * when * (1 - when), 2 * when * (when - 0.5)
+        return system.rates(y, sum(w * part for w, part in zip(weights, parts, strict=True)), p)
+
+    stiff = _implicit if system.jumps else _rosenbrock
+    end = stiff(rates, x, h, system.stiff) if system.stiff else _rk4(rates, x, h)
     return ca.Function("rr_step", [x, ca.vertcat(h, nodes), p], [ca.cse(end)])
 
 
-def _rk4(f: Slope, x: ca.SX, h: ca.SX, _: int) -> ca.SX:
-    k1 = f(0, x)
-    k2 = f(1, x + h / 2 * k1)
-    k3 = f(1, x + h / 2 * k2)
-    k4 = f(2, x + h * k3)
+def _rk4(f: Slope, x: ca.SX, h: ca.SX) -> ca.SX:
+    k1 = f(0.0, x)
+    k2 = f(0.5, x + h / 2 * k1)
+    k3 = f(0.5, x + h / 2 * k2)
+    k4 = f(1.0, x + h * k3)
     return x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
 
 
 def _rosenbrock(f: Slope, x: ca.SX, h: ca.SX, n: int) -> ca.SX:
     """ROS2 of Verwer, Spee, Blom and Hundsdorfer (1999): L-stable, and of order 2 with any matrix.
 
-    So the matrix need only contain the stiff states. Its columns are their chords to rest, not
-    tangents: a wheel that slides is hardly held by more slip, and a tangent lets it go past rest
-    and back, step by step, so that the result depends on the last digit of the start.
+    So the matrix need only contain the stiff states.
     """
     gamma = 1 - 1 / math.sqrt(2)
-    here, columns = f(0, x), []
-    for k in range(x.numel() - n, x.numel()):
-        there = ca.SX(x)
-        there[k] = 0
-        away = ca.if_else(ca.fabs(x[k]) > _REST, x[k], _REST)
-        columns.append((here - f(0, there))[-n:] / away)
-    inverse = ca.inv_minor(ca.SX.eye(n) - gamma * h * ca.horzcat(*columns))
+    y = ca.SX.sym("y", x.numel())
+    by = ca.jacobian(f(0.0, y)[-n:], y)[:, -n:]
+    inverse = ca.inv_minor(ca.SX.eye(n) - gamma * h * ca.substitute(by, y, x))
 
     def solve(b: ca.SX) -> ca.SX:
         return ca.vertcat(b[:-n], inverse @ b[-n:])
 
-    k1 = solve(here)
-    k2 = solve(f(2, x + h * k1) - 2 * k1)
+    k1 = solve(f(0.0, x))
+    k2 = solve(f(1.0, x + h * k1) - 2 * k1)
     return x + h * (1.5 * k1 + 0.5 * k2)
+
+
+def _implicit(f: Slope, x: ca.SX, h: ca.SX, n: int) -> ca.SX:
+    """ARS(2,2,2) of Ascher, Ruuth and Spiteri (1997): of order 2, and implicit and L-stable in the
+    stiff states."""
+    gamma = 1 - 1 / math.sqrt(2)
+    delta = 1 - 1 / (2 * gamma)
+    u, s = x[:-n], x[-n:]
+
+    def settled(when: float, u: ca.SX, known: ca.SX) -> ca.SX:
+        """The s that equals known + gamma h f(u, s). Friction is steepest at 0, so that Newton's
+        method does not overshoot from there."""
+        y = ca.SX.sym("y", n)
+        rate = f(when, ca.vertcat(u, y))[-n:]
+        both, s = [rate, ca.jacobian(rate, y)], ca.SX.zeros(n)
+        for _ in range(_ITERATIONS):
+            here, by = ca.substitute(both, [y], [s])
+            s -= ca.inv_minor(ca.SX.eye(n) - gamma * h * by) @ (s - known - gamma * h * here)
+        return s
+
+    k1 = f(0.0, x)[:-n]
+    u1 = u + gamma * h * k1
+    s1 = settled(gamma, u1, s)
+    k2 = f(gamma, ca.vertcat(u1, s1))[:-n]
+    u2 = u + h * (delta * k1 + (1 - delta) * k2)
+    return ca.vertcat(u2, settled(1.0, u2, s + (1 - gamma) / gamma * (s1 - s)))

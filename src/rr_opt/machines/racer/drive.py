@@ -2,7 +2,7 @@
 
 import math
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
@@ -116,18 +116,18 @@ def _averaged(drive: Drive, steps: Steps, late: float) -> DrivePath:
     """
     edges = steps.edges + late
     h = np.diff(edges)
-    halves = np.concatenate([[edges[0] - h[0] / 2], edges[:-1] + h / 2, [edges[-1] + h[-1] / 2]])
-    at_edges, middle = drive.at(edges), drive.at(halves)[0]
-    rate = np.diff(middle) / np.diff(halves)
-    acceleration = np.diff(rate) / h
+    middles = edges[:-1] + h / 2
+    (angle, rate, _), middle = drive.at(edges), drive.at(middles)[0]
+    mean = np.concatenate([rate[:1], np.diff(middle) / np.diff(middles), rate[-1:]])
+    acceleration = np.diff(mean) / h
     nodes = np.array(
         [
-            [at_edges[0, :-1], middle[1:-1], at_edges[0, 1:]],
-            [rate[:-1], (rate[:-1] + rate[1:]) / 2, rate[1:]],
+            [angle[:-1], middle, angle[1:]],
+            [mean[:-1], (mean[:-1] + mean[1:]) / 2, mean[1:]],
             [acceleration] * 3,
         ]
     )
-    at = np.vstack([at_edges[:2], np.append(acceleration, acceleration[-1])])[:, :: steps.each]
+    at = np.array([angle, rate, np.append(acceleration, acceleration[-1])])[:, :: steps.each]
     return DrivePath(h, nodes, at, steps.each, min(_COARSER, steps.each))
 
 
@@ -267,12 +267,18 @@ def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
     sharp = ((one, q) for one in every for q in one.parameters if q.sharp)
     stiff, longest = any(one.stiff for one in every), _LONGEST
     if any(given[f"{one.name}.{q.name}"] != q.neutral for one, q in sharp):
-        longest = _SHARPEST if stiff else _SHARP
+        longest = (_STIFF if jumping(effects) else _SHARPEST) if stiff else _SHARP
     elif stiff:
         longest = _STIFF
     elif any(one.near_discontinuous for one in every):
         longest = _SHARP
     return {"stiff": stiff, "longest": longest}
+
+
+def jumping(effects: Iterable[str]) -> bool:
+    """Whether the servo's rate jumps with these effects."""
+    every = (CATALOGUE[name] for name in effects)
+    return any(one.actuate and not one.differentiable for one in every)
 
 
 def neighbours(

@@ -21,6 +21,7 @@ from rr_opt.machines.racer.drive import (
     drive_path,
     drive_slopes,
     grain,
+    jumping,
     lateness,
     neighbours,
     steps_of,
@@ -49,7 +50,8 @@ def driven(
     parameters that are idle: neutral."""
     motion = floor_motion(effects)
     rates = _without(motion, idle) if idle else motion.rates
-    return System(rates, motion.observed, stiff_states(motion), lasts=True), motion
+    stiff, jumps = stiff_states(motion), jumping(effects)
+    return System(rates, motion.observed, stiff, jumps=jumps, lasts=True), motion
 
 
 @lru_cache
