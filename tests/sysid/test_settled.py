@@ -104,6 +104,30 @@ def test_two_effects_are_tried_where_no_single_one_wins(alone, pairs):
         assert selection.best.effects == ("slip",)
 
 
+def test_they_are_fitted_in_place_of_each_effect_of_a_pair():
+    class Paired(Settling):
+        def complete(self, candidate):
+            return False
+
+        def _scored(self, promising, size) -> Any:
+            return [Made((Choice("drag"), Choice("tilt")), 0.0)] if size == 2 else []
+
+        def _extended(self) -> Any:
+            return []
+
+        def _proposed(self, parent) -> Any:
+            return []
+
+        def _part(self, whole, key) -> Any:
+            return Made(key, -50.0)
+
+    selection = Paired(elpd=10.0)
+    selection._forward()
+    beside = {(Choice(name), Choice("creep")) for name in ("drag", "tilt")}
+    assert set(selection.guesses) == beside
+    assert "creep" in selection.best.effects
+
+
 @pytest.mark.parametrize(
     ("whole", "segments", "taken"),
     [(0.8, 1.0, True), (1.1, 0.8, True), (0.85, 0.85, False), (1.1, 0.99, False)],

@@ -155,8 +155,8 @@ class Selection:
             rival = min((one.fit for one in self.tried.values()), key=lambda fit: fit.deviance)
             begun, nested = [*guesses], self._nested(key)
             if key in self._earlier:
-                own, values = {q.name for q in quantities_of(self.model, key)}, self._earlier[key]
-                begun = [{q: v for q, v in values.fit.values.items() if q in own}]
+                fit = self._earlier[key].fit
+                begun = [{q: fit.values[q] for q in fit.problem.names}]
             if nested:
                 begun.append({q: nested.fit.values[q] for q in nested.fit.problem.names})
             made = fitted(self.model, key, (parent or self.best).fit, begun, rival)

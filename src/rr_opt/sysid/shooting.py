@@ -183,8 +183,8 @@ def _sizes(system: System) -> tuple[int, int]:
 
 def _key(system: System) -> str:
     """What the source is written from."""
-    how = f"{bool(system.stiff)} {system.jumps}"
-    return "\n".join((system.rates.serialize(), system.seen.serialize(), how, _writer()))
+    parts = system.rates.serialize(), system.seen.serialize(), _method(system).__name__, _writer()
+    return "\n".join(parts)
 
 
 @lru_cache(maxsize=1)
@@ -223,12 +223,17 @@ def _step(system: System) -> ca.Function:
         weights = 2 * (when - 0.5) * (when - 1), 4 * when * (1 - when), 2 * when * (when - 0.5)
         return system.rates(y, sum(w * part for w, part in zip(weights, parts, strict=True)), p)
 
-    stiff = _implicit if system.jumps else _rosenbrock
-    end = stiff(rates, x, h, system.stiff) if system.stiff else _rk4(rates, x, h)
+    end = _method(system)(rates, x, h, system.stiff)
     return ca.Function("rr_step", [x, ca.vertcat(h, nodes), p], [ca.cse(end)])
 
 
-def _rk4(f: Slope, x: ca.SX, h: ca.SX) -> ca.SX:
+def _method(system: System) -> Callable[[Slope, ca.SX, ca.SX, int], ca.SX]:
+    if not system.stiff:
+        return _rk4
+    return _implicit if system.jumps else _rosenbrock
+
+
+def _rk4(f: Slope, x: ca.SX, h: ca.SX, _: int) -> ca.SX:
     k1 = f(0.0, x)
     k2 = f(0.5, x + h / 2 * k1)
     k3 = f(0.5, x + h / 2 * k2)

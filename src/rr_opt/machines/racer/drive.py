@@ -83,7 +83,8 @@ def steps_of(
 
 
 def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -> DrivePath:
-    """The drive over the steps; with `mean`, dphi is constant over each step."""
+    """The drive over the steps. With `mean`, dphi is constant over each step, unless some states
+    are stiff."""
     if steps.stiff:
         return _averaged(drive, steps, late)
     edges = steps.edges + late
