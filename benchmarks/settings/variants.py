@@ -148,9 +148,10 @@ def said(model: RollerRacer) -> dict[str, Any]:
     """The diagnosis, as far as it is scored."""
     began = time.process_time()
     result = diagnose.identified(model, diagnose.Stopwatch())
-    verdict, named = verdict_of(result), ()
-    if verdict in ("missing_physics", "parameters"):
-        named = (findings if verdict == "missing_physics" else wrong_values)(result)
+    verdict = verdict_of(result)
+    named = findings(result, result.shown) if verdict == "missing_physics" else ()
+    if verdict == "parameters":
+        named = wrong_values(result)
     return {
         "verdict": verdict,
         "named": {one.name: one.confidence for one in named},
