@@ -19,8 +19,9 @@ from rr_opt.sysid.shooting import DrivePath
 
 _LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0008, 0.0004
 """Longest step, s: in general, with dry friction or a gear that gives, with wheels that creep (also
-if they slide beside a servo whose rate jumps), and with wheels that slide. With steps four times as long as the last, a fast robot whose wheels hold is
-off by 0.5 mm within 5 s, and one that slides by 1 to 20 mm."""
+if they slide beside a servo whose rate jumps), and with wheels that slide. With steps four times as
+long as the last, a fast robot whose wheels hold is off by 0.5 mm within 5 s, and one that slides by
+1 to 20 mm."""
 _COARSER = 2
 """Steps of wheels that slip which derivatives take as one: across the onset of sliding these are
 off by a tenth or two; with twice as many, by a factor."""
