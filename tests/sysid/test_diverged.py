@@ -66,3 +66,5 @@ def test_a_candidate_that_never_can_be_is_given_up():
     found = fitted(model, (), parent, [{}])
     assert found.given_up
     assert not found.predicts_better(Candidate((), parent))
+    assert found.elpd == -math.inf
+    assert Candidate((), parent).predicts_better(found)

@@ -7,6 +7,8 @@ running, where dphi jumps as well.
 import numpy as np
 import pytest
 
+from rr_opt.effects import CATALOGUE
+from rr_opt.machines.racer.drive import Drives, drive_path, drive_slopes, grain, steps_of
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run, Uncertainty
 from rr_opt.model.gait import SineGait
@@ -32,6 +34,22 @@ def racer(start, before) -> RollerRacer:
     flags = {name: np.zeros(t.size, np.uint8) for name in CHANNELS}
     run = Run(Recording("run", t, still, sigma, flags), GAIT, "fit", start)
     return RollerRacer(Experiment(BENCHMARK, NOISE, {"m1": Uncertainty(0.01)}, (run,), "made up"))
+
+
+@pytest.mark.parametrize("before", [0.3, 0.3031, 0.3069])
+def test_where_wheels_slip_the_rate_amounts_to_the_angle(before):
+    """A start from rest is spread over the steps around it."""
+    model, effects = racer("rest", before), ("clock_offset", "lateral_slip")
+    given = {**model.nominal, "clock_offset.offset": 0.0}
+    given |= {f"lateral_slip.{q.name}": q.neutral for q in CATALOGUE["lateral_slip"].parameters}
+    t = model.runs[0].t
+    drives = Drives(model.experiment.runs)
+    slopes = drive_slopes(drives, 0, t, given, effects, ("clock_offset.offset",))
+    assert slopes is not None
+    drive = drives.of(0, given, effects)
+    h = drive_path(drive, steps_of(drive, t, 0.0, **grain(given, effects)), 0.0).h
+    turned = np.sum(slopes.middle[1, :, 0] * h)
+    assert turned == pytest.approx(slopes.at[0, -1, 0] - slopes.at[0, 0, 0], rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """An effect that is put into the robot is the one that the search names."""
 
+from dataclasses import replace
+
 import pytest
 
 from rr_opt.model.gait import SineGait
@@ -108,6 +110,22 @@ def test_a_repeated_search_starts_from_the_earlier_fits(monkeypatch):
     monkeypatch.setattr(selection, "fitted", fitted)
     again.fitted(tilt, [{"floor_tilt.tilt_x": 0.5}])
     assert starts == [{q: earlier.values[q] for q in earlier.problem.names}]
+
+
+def test_but_not_from_one_that_was_given_up(monkeypatch):
+    model = with_effect({}, ())
+    search = Selection(model, first(model, range(len(model.runs))))
+    tilt, starts = (Choice("floor_tilt"),), []
+    search.tried[tilt] = replace(search.fitted(tilt, [{}]), given_up=True)
+    again = search.again([ChannelNoise(0.5)] * len(model.channels))
+
+    def fitted(model, key, parent, guesses, rival):
+        starts.extend(guesses)
+        return search.tried[tilt]
+
+    monkeypatch.setattr(selection, "fitted", fitted)
+    again.fitted(tilt, [{"floor_tilt.tilt_x": 0.5}])
+    assert starts == [{"floor_tilt.tilt_x": 0.5}]
 
 
 def test_slip_is_found_beside_an_effect_that_alone_explains_little():

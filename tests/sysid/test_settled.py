@@ -128,6 +128,29 @@ def test_they_are_fitted_in_place_of_each_effect_of_a_pair():
     assert "creep" in selection.best.effects
 
 
+def test_a_step_that_advances_is_taken_before_one_that_predicts_better():
+    class Forked(Settling):
+        def complete(self, candidate):
+            return False
+
+        def _scored(self, promising, size) -> Any:
+            return [Made((Choice("drag"),), 0.0)] if size == 1 else []
+
+        def _extended(self) -> Any:
+            return [Standing((Choice("tilt"),), 4.0)]
+
+        def _proposed(self, parent) -> Any:
+            return []
+
+    class Standing(Made):
+        def advances(self, _) -> bool:
+            return False
+
+    selection = Forked(elpd=-50.0)
+    selection._forward()
+    assert selection.best.effects == ("drag",)
+
+
 @pytest.mark.parametrize(
     ("whole", "segments", "taken"),
     [(0.8, 1.0, True), (1.1, 0.8, True), (0.85, 0.85, False), (1.1, 0.99, False)],

@@ -201,12 +201,14 @@ _CANDIDATES = (
 
 def candidates_table(found: Diagnosis) -> doc.Table:
     """All sets of effects that were fitted, the best first."""
-    tried = sorted(found.tried, key=lambda each: each.score)
+    tried = found.tried
     return doc.table_of(
         tried[:_MOST],
         {
             "Effects": lambda each: _candidate(each, tried),
-            "Score above the best": lambda each: f"+{each.score - tried[0].score:.0f}",
+            "Score above the best": lambda each: (
+                f"+{each.score - tried[0].score:.0f}" if math.isfinite(each.score) else "–"
+            ),
             "Misfit": lambda each: f"{total(each.fit):.2f} σ",
             "Verdict": lambda each: doc.Badge("accepted", "good") if each.accepted else "",
         },

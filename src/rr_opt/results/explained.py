@@ -61,7 +61,6 @@ class Explained(Result, Generic[Diagnosed]):
 
     def _record(self) -> dict[str, Any]:
         found = self.found
-        ranked = sorted(found.tried, key=lambda one: one.score)
         plan = found.next_experiment
         return {
             "name": self.name,
@@ -84,10 +83,10 @@ class Explained(Result, Generic[Diagnosed]):
             "candidates": [
                 {
                     **picked(one, "effects score values accepted"),
-                    "score_above_best": one.score - ranked[0].score,
+                    "score_above_best": one.score - found.tried[0].score,
                     "rms_beyond_noise": one.fit,
                 }
-                for one in ranked
+                for one in found.tried
             ],
             **picked(found, "remainder indistinguishable"),
             "next_experiment": plan

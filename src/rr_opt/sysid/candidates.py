@@ -36,7 +36,7 @@ class Candidate:
 
     @property
     def predictive(self) -> Mapping[int, float]:
-        """Log predictive density of each run given the others."""
+        """Log predictive density of each run given the others; -inf if any cannot be simulated."""
         return self.fit.predictive
 
     @property
@@ -98,8 +98,8 @@ class Candidate:
 
     def predicts_better(self, other: Candidate) -> bool:
         """Whether the predictive evidence is enough to prefer it."""
-        if self.given_up:
-            return False
+        if self.given_up or not math.isfinite(other.elpd):
+            return not self.given_up
         gain, error = self.advantage(other)
         return gain > max(SETTINGS.evidence, SETTINGS.standard_errors * error)
 

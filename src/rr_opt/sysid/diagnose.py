@@ -57,6 +57,8 @@ def diagnose(model: MachineModel, progress: Callable[[str], None] = lambda _: No
     result = identified(model, watch)
     with watch("planning the next recording"):
         rival = rival_of(result)
+        # With the noise that was estimated.
+        model = result.selection.model
         plan = model.next_experiment(result.best.fit, rival and (rival[0], rival[1].fit))
     found = replace(_answer(result), next_experiment=plan, seconds=dict(watch.seconds))
     worth = model.worth(found.nominal, found.final)

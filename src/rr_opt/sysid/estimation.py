@@ -469,7 +469,9 @@ class Fit:
 
     @cached_property
     def predictive(self) -> Mapping[int, float]:
-        """Log predictive density of each run given the others."""
+        """Log predictive density of each run given the others; -inf if any cannot be simulated."""
+        if not math.isfinite(self.deviance):
+            return dict.fromkeys(self.evidences, -math.inf)
         every = self.least(self.marginal)
         others = {
             run: {other: e for other, e in self.marginal.items() if other != run}

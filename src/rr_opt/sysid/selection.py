@@ -154,8 +154,9 @@ class Selection:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
             rival = min((one.fit for one in self.tried.values()), key=lambda fit: fit.deviance)
             begun, nested = [*guesses], self._nested(key)
-            if key in self._earlier:
-                fit = self._earlier[key].fit
+            earlier = self._earlier.get(key)
+            if earlier and not earlier.given_up:
+                fit = earlier.fit
                 begun = [{q: fit.values[q] for q in fit.problem.names}]
             if nested:
                 begun.append({q: nested.fit.values[q] for q in nested.fit.problem.names})
@@ -206,9 +207,7 @@ class Selection:
         best = _best(found)
         if best and len(best.choices) > len(self.best.choices) + 1:
             found += [one for part in self._fewer(best) for one in self._unscored(part)]
-            best = _best(found)
-        if best and self._advance(best):
-            self.best = best
+        self.best = _best(one for one in found if self._advance(one)) or self.best
 
     def _advance(self, found: Candidate | None) -> bool:
         """Whether a candidate is a step forward."""

@@ -18,9 +18,10 @@ from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
 _LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0008, 0.0004
-"""Longest step, s: in general, with dry friction or a gear that gives, with wheels that creep, and
-with wheels that slide. With steps four times as long as the last, a fast robot whose wheels hold is
-off by 0.5 mm within 5 s, and one that slides by 1 to 20 mm."""
+"""Longest step, s: in general, with dry friction or a gear that gives, with wheels that creep (also
+if they slide beside a servo whose rate jumps), and with wheels that slide. With steps four times as
+long as the last, a fast robot whose wheels hold is off by 0.5 mm within 5 s, and one that slides by
+1 to 20 mm."""
 _COARSER = 2
 """Steps of wheels that slip which derivatives take as one: across the onset of sliding these are
 off by a tenth or two; with twice as many, by a factor."""
@@ -245,7 +246,7 @@ def drive_slopes(
         at[:, :, k] = (high.at - low.at) / apart
         nodes = (high.nodes - low.nodes) / apart
         middle[:, :, k] = nodes[:, 1]
-        if here.smooth and here.rest:
+        if here.smooth and here.rest and not steps.stiff:
             # The start may move into the step or out of it: dphi has to amount to the change of
             # phi.
             middle[1, first, k] = (nodes[0, 2, first] - nodes[0, 0, first]) / path.h[first]
