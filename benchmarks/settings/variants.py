@@ -150,8 +150,10 @@ def said(model: RollerRacer) -> dict[str, Any]:
     began = time.process_time()
     result = diagnose.identified(model, diagnose.Stopwatch())
     verdict, named = verdict_of(result), ()
-    if verdict in ("missing_physics", "parameters"):
-        named = (findings if verdict == "missing_physics" else wrong_values)(result)
+    if verdict == "missing_physics":
+        named = findings(result, result.shown)
+    elif verdict == "parameters":
+        named = wrong_values(result)
     return {
         "verdict": verdict,
         "named": {one.name: one.confidence for one in named},
