@@ -2,10 +2,14 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+from rr_opt.machines.pendulum import PENDULUM
 from rr_opt.results.diagnosis_tables import headline, interval_text, tie_text, value_text
+from rr_opt.results.machine_diagnosis import ExplainedMachine
 from rr_opt.sysid.diagnosis import Estimate, Tie
 
 
@@ -50,6 +54,24 @@ def test_headlines_say_the_verdict(every):
 def test_a_tie_says_what_stands_against_what(every, verdict, answer, rival, text):
     tie = Tie(tuple(answer.split()), tuple(rival.split()))
     assert tie_text(tie, every[verdict].found) == text
+
+
+def test_the_headline_of_another_machine_has_one_article(wrong_values):
+    wrong = replace(wrong_values.found.findings[0], name="J")
+    made: Any = SimpleNamespace(
+        found=replace(wrong_values.found, findings=(wrong,)),
+        experiment=SimpleNamespace(machine=PENDULUM),
+    )
+    assert ExplainedMachine.headline.fget(made) == (  # pyright: ignore
+        "The model is right, but the moment of inertia about the axis differs from nominal"
+    )
+
+
+def test_a_file_of_unestablished_effects_says_so(every):
+    (text,) = every["unexplained"]._tables().values()
+    assert text.splitlines()[1].endswith("any effects among them are not established.")
+    (text,) = every["missing_physics"]._tables().values()
+    assert text.splitlines()[1].startswith("# From trial by rr-opt")
 
 
 @pytest.mark.parametrize("verdict", ["consistent", "parameters", "missing_physics", "unexplained"])
