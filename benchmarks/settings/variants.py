@@ -18,9 +18,10 @@ from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import read_experiment, usable
 from rr_opt.sysid import diagnose, estimation, selection
+from rr_opt.sysid.diagnosis import groups
 from rr_opt.sysid.model import ChannelNoise, Choice, Segment
 from rr_opt.sysid.settings import SETTINGS, Settings
-from rr_opt.sysid.verdict import alike, findings, verdict_of, wrong_values
+from rr_opt.sysid.verdict import findings, ties, verdict_of, wrong_values
 
 AS_CHOSEN = "as chosen"
 OTHER_MACHINES = ("growth", "input_share", "input_noise", "modes", "windows")
@@ -155,7 +156,7 @@ def said(model: RollerRacer) -> dict[str, Any]:
     return {
         "verdict": verdict,
         "named": {one.name: one.confidence for one in named},
-        "groups": alike(result, verdict),
+        "groups": groups(ties(result, verdict)),
         "cpu": round(time.process_time() - began, 2),
     }
 

@@ -10,7 +10,7 @@ from rr_opt.sysid.verdict import Identification
 
 def candidate(*effects: str, elpd: float = 0.0, better: bool = True) -> Any:
     return SimpleNamespace(
-        choices=effects, effects=effects, elpd=elpd, predicts_better=lambda _: better
+        choices=effects, effects=effects, elpd=elpd, excess=0.0, predicts_better=lambda _: better
     )
 
 
@@ -31,7 +31,7 @@ def doubt(
         best=best,
         suspected=suspected,
         after=after,
-        share=0.0,
+        nominal=SimpleNamespace(excess=0.0),
         final=SimpleNamespace(excess=left),
         _ended=[best, *others],
         selection=SimpleNamespace(
@@ -53,16 +53,19 @@ def doubt(
 @pytest.mark.parametrize(
     ("factors", "reason"),
     [
-        ({"constant": 0.1}, "but the recordings disagree on the values."),
-        ({"alike": 0.1}, "but the remaining misfit exceeds the usual error of such models."),
-        ({"single": 0.5}, "but that many effects can mimic almost anything."),
-        ({"predicts": 0.1}, "but the held-out recordings do not confirm it."),
+        ({"constant": 0.1}, "but the recordings disagree on the values. Check whether something"),
+        (
+            {"alike": 0.1},
+            "but the remaining misfit exceeds the usual error of such models. Look for a cause",
+        ),
+        ({"single": 0.5}, "but that many effects can mimic almost anything. Record gaits"),
+        ({"predicts": 0.1}, "but the held-out recordings do not confirm it. Check the held-out"),
         (
             {"constant": 0.1, "alike": 0.1},
             "disagree on the values and the remaining misfit exceeds",
         ),
         ({"alike": 0.6, "predicts": 0.7}, "but the remaining misfit exceeds"),
-        ({}, "but others do about as well."),
+        ({}, "but others do about as well. Record gaits"),
     ],
 )
 def test_the_reason(factors, reason):
@@ -73,7 +76,10 @@ def test_the_reason(factors, reason):
 
 def test_what_was_not_needed_is_said_to_leave_most():
     said = doubt(candidate(), candidate("servo_lag", elpd=9.0))
-    assert said == "The best candidate is servo lag, but most of the misfit remains."
+    assert said == (
+        "The best candidate is servo lag, but most of the misfit remains. Look for a cause where "
+        "the remaining misfit shows."
+    )
 
 
 def test_what_predicts_too_little_better_is_said_to_be_open():
@@ -90,8 +96,14 @@ def test_nothing_is_said_beside_a_suspicion():
     assert doubt(candidate("dragged_cable"), suspected=("dragged_cable",)) == ""
 
 
-DISAGREE = "The recordings disagree on the values of the nominal model."
-FIT = "Held-out recordings show the missing physics better than fitted ones: fit them."
+DISAGREE = (
+    "The recordings disagree on the values of the nominal model. Check whether something changed "
+    "between the recordings."
+)
+FIT = (
+    "The missing physics shows mainly in the held-out recordings. Change them to `use: fit`, hold "
+    "out others, and diagnose again."
+)
 
 TIME: Any = SimpleNamespace(certain=True, channel="rolling", variable="time")
 NOISE: Any = SimpleNamespace(certain=False, channel="rolling", variable="time")

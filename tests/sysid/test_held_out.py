@@ -105,16 +105,31 @@ def test_what_remains_is_a_share_of_the_first_misfit(choices):
         final=SimpleNamespace(excess=0.5),
         best=SimpleNamespace(choices=choices),
     )
-    made.share = Identification.share.fget(made)  # pyright: ignore
     left = remainder_of(made)
+    assert left.share == Identification.share.fget(made)  # pyright: ignore
     assert (left.size, left.rms, left.share) == ("small", 0.5, pytest.approx(1e-4))
+
+
+def test_what_remains_is_told_of_the_values_that_predict_best():
+    made: Any = SimpleNamespace(
+        nominal=SimpleNamespace(excess=50.0),
+        selection=SimpleNamespace(
+            base=SimpleNamespace(excess=5.0), model=SimpleNamespace(form_error=0.0)
+        ),
+        final=SimpleNamespace(excess=45.0),
+    )
+    last: Any = SimpleNamespace(excess=25.0)
+    left = remainder_of(made, last)
+    assert (left.size, left.rms, left.share) == ("large", 25.0, pytest.approx(0.25))
 
 
 @pytest.mark.parametrize(("form_error", "size"), [(0.0, "small"), (0.3, "none")])
 def test_what_any_two_machines_differ_by_is_no_remainder(form_error, size):
     made: Any = SimpleNamespace(
-        selection=SimpleNamespace(model=SimpleNamespace(form_error=form_error)),
+        nominal=SimpleNamespace(excess=50.0),
+        selection=SimpleNamespace(
+            base=SimpleNamespace(excess=5.0), model=SimpleNamespace(form_error=form_error)
+        ),
         final=SimpleNamespace(excess=0.3),
-        share=0.001,
     )
     assert remainder_of(made).size == size

@@ -40,9 +40,10 @@ def test_it_tells_the_answer_from_its_rival(case):
     assert told is not None
     assert told.between == ("coulomb_friction", "quadratic_drag")
     assert told.separation > 0.3
-    assert f"Coulomb friction and quadratic drag would differ by {told.separation:.1f}" in (
-        told.sentence
-    )
+    said = f"a model with quadratic drag would miss this recording by {told.separation:.1f} sigma"
+    assert f"If the cause is Coulomb friction, {said}" in told.sentence
+    assert "psi = " in told.sentence
+    assert told.sentence.endswith("Add it to experiment.yaml and diagnose again.")
     # A rival that predicts the same leaves nothing to tell: a value is narrowed down instead.
     same = next_experiment(model, coulomb, ("its double", coulomb))
     assert same is not None
@@ -54,7 +55,7 @@ def test_without_a_rival_it_narrows_down_a_value(case):
     told = next_experiment(model, coulomb, None)
     assert told is not None
     assert told.between[1] in coulomb.problem.names
-    narrower = float(told.sentence.rpartition("a factor of ")[2].removesuffix("."))
+    narrower = float(told.sentence.rpartition("a factor of ")[2].partition(". ")[0])
     assert narrower > 1.2
 
 

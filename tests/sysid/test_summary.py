@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.sysid.diagnosis import Remainder, summary_of
+from rr_opt.sysid.diagnosis import Remainder, Tie, summary_of
 from tests.report.diagnosis.conftest import _experiment, _found
 
 
@@ -31,7 +31,7 @@ def found():
     ],
 )
 def test_it_opens_with_the_verdict(found, verdict, said):
-    text = summary_of(replace(found, verdict=verdict, indistinguishable=()))
+    text = summary_of(replace(found, verdict=verdict, ties=()))
     assert text.startswith(f"{said} On held-out recordings, the misfit fell from")
     assert "from 8.10 to 1.02 sigma, where 1 is noise alone." in text
 
@@ -70,9 +70,11 @@ def test_what_is_suspected_is_said(found):
     suspect = replace(found.findings[0], name="dragged_cable", confidence=0.87)
     doubtful = replace(found, verdict="unexplained", findings=(), suspects=(suspect,))
     text = summary_of(doubtful)
-    assert "Suspected, but untested in trials: dragged cable (confidence 87 %). " in text
+    assert (
+        "Suspected (few blind trials have tested this): dragged cable (confidence 87 %). " in text
+    )
     assert "Suspected" not in summary_of(found)
-    tied = replace(doubtful, indistinguishable=(("dragged_cable", "coulomb_friction"),))
+    tied = replace(doubtful, ties=(Tie(("dragged_cable",), ("coulomb_friction",)),))
     assert "These recordings cannot distinguish this from Coulomb friction." in summary_of(tied)
 
 
@@ -88,26 +90,41 @@ def test_a_place_is_never_said_to_be_off_by_nothing(off, said):
 
 def test_what_remains_is_told_with_what_it_depends_on(found):
     left = replace(found, remainder=Remainder("small", 0.4, 0.03, "a force along the wheels"))
-    assert "The remainder is small (3 % of the misfit): a force along the wheels." in summary_of(
-        left
-    )
+    said = "The remainder is small (3 % of the initial misfit beyond the noise): a force along the"
+    assert said in summary_of(left)
     assert "What remains" not in summary_of(found)
     assert "What remains" not in summary_of(replace(left, verdict="consistent"))
 
 
 def test_a_tie_is_called_one(found):
-    tied = replace(found, indistinguishable=(("coulomb_friction", "lateral_slip"),))
+    tied = replace(found, ties=(Tie(("coulomb_friction",), ("lateral_slip",)),))
     said = "These recordings cannot distinguish this from lateral slip."
     assert said in summary_of(tied)
-    assert said in summary_of(replace(tied, verdict="parameters"))
-    assert said not in summary_of(replace(tied, indistinguishable=()))
+    values = replace(tied, verdict="parameters", ties=(Tie(("I1",), ("m1", "kappa1")),))
+    assert "cannot distinguish this from a wrong m1 or kappa1." in summary_of(values)
+    assert said not in summary_of(replace(tied, ties=()))
     assert said not in summary_of(replace(tied, verdict="unexplained"))
+
+
+def test_a_tie_with_a_part_of_the_answer_is_not_one_with_another_effect(found):
+    both = ("coulomb_friction", "lateral_slip")
+    named = tuple(replace(found.findings[0], name=name) for name in both)
+    ties = (Tie(both, both[1:]), Tie(both, ("floor_patch", "floor_tilt")))
+    said = (
+        "These recordings cannot distinguish this from lateral slip alone or from floor patch and "
+        "floor tilt."
+    )
+    assert said in summary_of(replace(found, findings=named, ties=ties))
+    # The answer has an effect that is not named: what is named is the rival.
+    assert "cannot distinguish" not in summary_of(
+        replace(found, ties=(Tie(both, ("coulomb_friction",)),))
+    )
 
 
 def test_the_next_recording_is_asked_for_where_something_is_open(found):
     plan = found.next_experiment.sentence
     assert summary_of(found).endswith(plan)
-    settled = replace(found, indistinguishable=())
+    settled = replace(found, ties=())
     assert plan not in summary_of(settled)
     assert plan not in summary_of(replace(found, verdict="consistent"))
 

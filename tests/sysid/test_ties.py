@@ -5,7 +5,8 @@ from typing import Any
 
 import pytest
 
-from rr_opt.sysid.verdict import alike
+from rr_opt.sysid.diagnosis import groups
+from rr_opt.sysid.verdict import ties
 
 CATALOGUE = {
     "friction": SimpleNamespace(named=True),
@@ -33,4 +34,4 @@ def result(rival: tuple[str, ...], suspected: tuple[str, ...] = ()) -> Any:
     ],
 )
 def test_beside_what_is_suspected(rival, suspected, told):
-    assert alike(result(rival, suspected), "unexplained") == told
+    assert groups(ties(result(rival, suspected), "unexplained")) == told

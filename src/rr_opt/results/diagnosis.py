@@ -11,7 +11,6 @@ from rr_opt.documents.rendering import terminal
 from rr_opt.effects import CATALOGUE
 from rr_opt.files.record import robot_yaml
 from rr_opt.formatting import counted, words_of
-from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.robot import Robot
 from rr_opt.results import diagnosis_tables as tables
@@ -96,7 +95,9 @@ class ExplainedExperiment(Explained[Experiment]):
         if self.marked:
             return "held-out recordings"
         several = len(self.found.final) > 1
-        return "each recording, left out in turn" if several else "the only recording, fitted"
+        return (
+            "the fitted recordings; none was held out" if several else "the only recording, fitted"
+        )
 
     @property
     def proof(self) -> tuple[int, ...]:
@@ -157,9 +158,8 @@ class ExplainedExperiment(Explained[Experiment]):
         return super()._record() | {"loss": loss_record(self.loss), "left_out": self.left_out}
 
     def _tables(self) -> dict[str, str]:
-        title = (
-            f"{tables.headline(self.found)}.\nFrom {self.name} by rr-opt {__version__} diagnose."
-        )
+        title = f"{tables.headline(self.found)}.\n{tables.caveat(self.found)}"
+        title = f"{title.strip()}\nFrom {self.name} by rr-opt {__version__} diagnose."
         return {self.OTHERS[0]: robot_yaml(self.corrected_robot, title)}
 
 
@@ -203,10 +203,10 @@ def chain_note(one: ExplainedExperiment) -> str:
         return f"The stages were not tested individually.{lit}"
     where = f"{one.where[0].upper()}{one.where[1:].removesuffix('.')}. " if one.where else ""
     if not one.guilty:
-        return f"{where or 'No channel shows a significant fault. '}{_SIGMA}"
+        return f"{where or 'No stage shows a significant fault. '}{_SIGMA}"
     return (
         f"{where}Highlighted: where an unknown input would explain most of the nominal model's "
-        f"misfit; the motion carries the fault into the other channels. {_SIGMA}"
+        f"misfit; the motion carries the fault into the other stages. {_SIGMA}"
     )
 
 
@@ -236,13 +236,13 @@ def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
 
 def _open(one: ExplainedExperiment) -> Iterator[str]:
     found = one.found
-    for group in found.indistinguishable:
-        yield f"These recordings cannot distinguish between {listed(map(words_of, group))}."
+    for tie in found.ties:
+        yield f"These recordings cannot distinguish {tables.tie_text(tie, found)}."
     if found.verdict != "consistent":
         yield f"Remainder: {tables.remainder_text(found.remainder)}. {found.remainder.matters}"
     yield from (each.sentence for each in found.residue)
-    if found.next_experiment is not None:
-        yield found.next_experiment.sentence
+    if found.advice:
+        yield found.advice
 
 
 def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
@@ -263,17 +263,17 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     yield doc.Fact("misfit", f"{misfit} ({proof})")
     for stage, word in zip(found.stages, tables.stage_words(found.stages), strict=True):
         text = f"{word}, {tables.stage_text(stage, found)}"
-        yield doc.Fact(f"channel {tables.stage_name(stage)}", text)
-    for group in found.indistinguishable:
-        yield doc.Fact("indistinguishable", listed(map(words_of, group), "or"))
+        yield doc.Fact(f"stage {tables.stage_name(stage)}", text)
+    for tie in found.ties:
+        yield doc.Fact("indistinguishable", tables.tie_text(tie, found))
     if found.verdict != "consistent":
         yield doc.Fact("remainder", tables.remainder_text(found.remainder))
     for each in found.residue:
         yield doc.Fact("residual", each.sentence)
     if one.loss is not None:
         yield doc.Fact("speed lost", loss_line(one.loss))
-    if found.next_experiment is not None:
-        yield doc.Fact("record next", found.next_experiment.sentence)
+    if found.advice:
+        yield doc.Fact("record next", found.advice)
     yield doc.Fact("took", f"{sum(found.seconds.values()):.0f} s")
 
 

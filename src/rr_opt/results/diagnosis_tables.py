@@ -10,7 +10,17 @@ from rr_opt.formatting import number, with_unit, words_of
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment, Run
 from rr_opt.model.parameters import PARAMETERS, parameters_of
-from rr_opt.sysid.diagnosis import Diagnosis, Estimate, Finding, Misfit, Remainder, Stage, Tried
+from rr_opt.sysid.diagnosis import (
+    Diagnosis,
+    Estimate,
+    Finding,
+    Misfit,
+    Remainder,
+    Stage,
+    Tie,
+    Tried,
+    tied,
+)
 from rr_opt.sysid.settings import SETTINGS
 
 _NAMES = {
@@ -78,7 +88,20 @@ def headline(
         several = "are" if len(found.suspects) > 1 else "is"
         names = listed(effect(one.name) for one in found.suspects)
         return f"Physics is missing; {names} {several} suspected"
-    return "Physics is missing, but no known effect accounts for it"
+    return "Physics is missing, but no effect could be named"
+
+
+def caveat(found: Diagnosis) -> str:
+    """What a file with the corrected values has to say about them, if anything."""
+    if found.verdict != "unexplained":
+        return ""
+    return "These values predict best; any effects among them are not established."
+
+
+def tie_text(tie: Tie, found: Diagnosis) -> str:
+    """`Coulomb friction and servo lag from Coulomb friction alone`, or `a wrong m1 from ...`."""
+    answer = tied((), tie.answer, found.verdict)
+    return f"{answer} from {tied(tie.answer, tie.rival, found.verdict)}"
 
 
 def value_text(one: Estimate) -> str:
@@ -124,12 +147,11 @@ def total(beyond: float) -> float:
 
 
 def remainder_text(one: Remainder) -> str:
-    """What is left: `small: misfit 1.08 σ, 3 % of the excess over the noise; a force ...`."""
+    """`large: misfit 1.08 σ, 3 % of the initial misfit beyond the noise; a force ...`."""
     if one.size == "none":
         return "none"
     depends = f"; {one.depends_on}" if one.depends_on else ""
-    share = f"{100 * one.share:.0f} % of the initial excess over the noise"
-    return f"{one.size}: misfit {total(one.rms):.2f} σ, {share}{depends}"
+    return f"{one.size}: misfit {total(one.rms):.2f} σ, {one.part}{depends}"
 
 
 def share_text(finding: Finding) -> str:
@@ -138,7 +160,7 @@ def share_text(finding: Finding) -> str:
 
 
 def stage_words(stages: Sequence[Stage]) -> list[str]:
-    """For each channel `fault` where an unknown input would explain most; `affected` where one
+    """For each stage `fault` where an unknown input would explain most; `affected` where one
     would explain some of the misfit too; or `clear`."""
     words = []
     for stage in stages:

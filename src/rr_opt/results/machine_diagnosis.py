@@ -9,8 +9,7 @@ import numpy as np
 from rr_opt.documents import document as doc
 from rr_opt.documents.rendering import terminal
 from rr_opt.files.record import rounded, yaml_text
-from rr_opt.formatting import with_unit, words_of
-from rr_opt.messages import listed
+from rr_opt.formatting import with_unit
 from rr_opt.model.machine import MachineExperiment, MachineRun
 from rr_opt.results import diagnosis_tables as tables
 from rr_opt.results.explained import Explained
@@ -48,7 +47,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
         return tables.headline(
             self.found,
             lambda name: machine.effect(name).words,
-            lambda name: f"the {one.words}" if (one := machine.parameter(name)) else name,
+            lambda name: one.words if (one := machine.parameter(name)) else name,
         )
 
     def _record(self) -> dict[str, Any]:
@@ -107,8 +106,8 @@ class ExplainedMachine(Explained[MachineExperiment]):
         return terminal(replace(whole, lead="", sections=(lead, *whole.sections)))
 
     def _open(self) -> Iterator[str]:
-        for group in self.found.indistinguishable:
-            yield f"These recordings cannot distinguish between {listed(map(words_of, group))}."
+        for tie in self.found.ties:
+            yield f"These recordings cannot distinguish {tables.tie_text(tie, self.found)}."
         left = self.found.remainder
         yield f"Remainder: {tables.remainder_text(left)}. {left.matters}"
 
@@ -152,7 +151,9 @@ class ExplainedMachine(Explained[MachineExperiment]):
             if dot:
                 effects.setdefault(effect, {})[constant] = rounded(value)
         content = {"machine": machine.name, "parameters": own, "physics": effects}
-        return {CORRECTED: yaml_text(content, f"{self.headline}.")}
+        return {
+            CORRECTED: yaml_text(content, f"{self.headline}. {tables.caveat(self.found)}".strip())
+        }
 
 
 def _error(misfits: list[Misfit], k: int) -> float:

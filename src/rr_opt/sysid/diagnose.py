@@ -22,10 +22,10 @@ from rr_opt.sysid.remainder import dependences, residues, stages, where
 from rr_opt.sysid.selection import Selection, turned
 from rr_opt.sysid.verdict import (
     Identification,
-    alike,
     findings,
     remainder_of,
     rival_of,
+    ties,
     tried,
     verdict_of,
     wrong_values,
@@ -78,15 +78,15 @@ def _answer(result: Identification) -> Diagnosis:
     if verdict == "missing_physics" and named:
         channel = model.catalogue[named[0].name].channel
     levels = (result.nominal, result.refitted, result.final)
-    fit, known, last = best.fit, result.estimates, result.final
+    fit, known, last, beside = best.fit, result.estimates, result.final, result.after
     if verdict == "unexplained":
         # The best predictor, though what it still lacks cannot be named.
         last = min(levels, key=lambda one: one.rms)
         if last is not result.final:
-            fit, known = base.fit, estimates(base.fit)
-    remainder = remainder_of(result)
-    if remainder.size != "none" and result.after:
-        remainder = replace(remainder, depends_on=where(result.after[0], model.inputs))
+            fit, known, beside = base.fit, estimates(base.fit), result.before
+    remainder = remainder_of(result, last)
+    if remainder.size != "none" and beside:
+        remainder = replace(remainder, depends_on=where(beside[0], model.inputs))
     return Diagnosis(
         verdict=verdict,
         summary="",
@@ -98,9 +98,9 @@ def _answer(result: Identification) -> Diagnosis:
         suspects=findings(result, result.suspected),
         parameters=known,
         tried=tried(selection, best if verdict != "unexplained" else None),
-        indistinguishable=alike(result, verdict),
+        ties=ties(result, verdict),
         next_experiment=None,
-        residue=tuple(residues(result.after, model.inputs)) if verdict == "unexplained" else (),
+        residue=tuple(residues(beside, model.inputs)) if verdict == "unexplained" else (),
         nominal=result.nominal.misfits,
         refitted=result.refitted.misfits,
         final=last.misfits,

@@ -1,6 +1,6 @@
 """What a diagnosis found, as frozen data; `diagnosis.json` and the page show it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -27,7 +27,9 @@ class Finding:
     """An accepted effect, or a parameter whose nominal value is wrong.
 
     confidence  0 to 1, against the best explanation without it
-    removes     share of the held-out misfit that it removes, 0 to 1
+    removes     share of the misfit beyond the noise (mean square) that it explains, 0 to 1: alone,
+                of the held-out recordings; beside others, what returns on the fitted ones if it is
+                dropped. Shares of several effects need not add up to 1
     lookalikes  what moves a machine much as it does and is not ruled out
     """
 
@@ -137,6 +139,24 @@ class NextExperiment:
 
 
 @dataclass(frozen=True)
+class Tie:
+    """An explanation that predicts the recordings about as well as the answer does.
+
+    answer  the answer's effects, or a wrong value
+    rival   the effects that would do in their place, or the values any one of which would
+    """
+
+    answer: tuple[str, ...]
+    rival: tuple[str, ...]
+
+
+def groups(ties: Iterable[Tie]) -> tuple[tuple[str, ...], ...]:
+    """For each tie all that it names, once."""
+    named = (tuple(dict.fromkeys((*tie.answer, *tie.rival))) for tie in ties)
+    return tuple(dict.fromkeys(named))
+
+
+@dataclass(frozen=True)
 class Residue:
     """The residual where no effect fits: a missing force as a function of one variable.
 
@@ -170,6 +190,11 @@ class Remainder:
     depends_on: str = ""
     matters: str = ""
 
+    @property
+    def part(self) -> str:
+        """The share in words."""
+        return f"{100 * self.share:.0f} % of the initial misfit beyond the noise"
+
 
 @dataclass(frozen=True)
 class Diagnosis:
@@ -178,8 +203,9 @@ class Diagnosis:
     nominal, refitted, final   misfit of each recording: nominal, with parameters refitted within
                                their uncertainties, with the accepted effects
     before, after              RMS over the held-out recordings in sigma, 1 is the noise
-    suspects                   lookalikes of effects, which predict better than these but were not
-                               tested in trials
+    suspects                   lookalikes of effects, which predict better than these but were
+                               tested in few trials
+    ties                       what the recordings cannot distinguish from the answer
     values                     of all parameters and effects of the corrected robot, SI
     remainder                  the misfit that remains with the accepted effects
     """
@@ -193,7 +219,7 @@ class Diagnosis:
     findings: tuple[Finding, ...]
     parameters: Mapping[str, Estimate]
     tried: tuple[Tried, ...]
-    indistinguishable: tuple[tuple[str, ...], ...]
+    ties: tuple[Tie, ...]
     next_experiment: NextExperiment | None
     residue: tuple[Residue, ...]
     nominal: tuple[Misfit, ...]
@@ -206,6 +232,27 @@ class Diagnosis:
     converged: bool = True
     remainder: Remainder = Remainder("none", 0.0, 0.0)
     suspects: tuple[Finding, ...] = ()
+
+    @property
+    def indistinguishable(self) -> tuple[tuple[str, ...], ...]:
+        """Of each tie, the answer and its rival together."""
+        return groups(self.ties)
+
+    @property
+    def advice(self) -> str:
+        """What to record next; empty where nothing is open."""
+        settled = self.remainder.size == "none" and not self.ties
+        if self.next_experiment is None or self.verdict == "consistent" or settled:
+            return ""
+        return self.next_experiment.sentence
+
+
+def tied(answer: Sequence[str], rival: Sequence[str], verdict: Verdict) -> str:
+    """The rival in words, as `servo lag alone`."""
+    if verdict == "parameters":
+        return f"a wrong {listed(map(words_of, rival), 'or')}"
+    alone = " alone" if set(rival) < set(answer) else ""
+    return f"{listed(map(words_of, rival))}{alone}"
 
 
 def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
@@ -234,22 +281,22 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     remainder, remains = found.remainder, ""
     if found.verdict != "consistent" and remainder.size != "none":
         depends = f": {remainder.depends_on}" if remainder.depends_on else ""
-        share = f"{100 * remainder.share:.0f} % of the misfit"
-        remains = f"The remainder is {remainder.size} ({share}){depends}."
+        remains = f"The remainder is {remainder.size} ({remainder.part}){depends}."
     own = {one.name for one in (*found.findings, *found.suspects)}
-    others = dict.fromkeys(n for some in found.indistinguishable for n in some if n not in own)
-    rivals = listed(map(words_of, others), "or")
+    others = dict.fromkeys(
+        tied(one.answer, one.rival, found.verdict) for one in found.ties if {*one.rival} != own
+    )
+    rivals = listed((f"from {one}" for one in others), "or")
     tie = (
-        f"These recordings cannot distinguish this from {rivals}."
+        f"These recordings cannot distinguish this {rivals}."
         if rivals and (found.verdict in ("missing_physics", "parameters") or found.suspects)
         else ""
     )
     alike = dict.fromkeys(other for one in found.findings for other in one.lookalikes)
     not_excluded = f"Not ruled out: {listed(alike, 'or')}." if alike else ""
     likely = (f"{words_of(s.name)} (confidence {100 * s.confidence:.0f} %)" for s in found.suspects)
-    suspected = f"Suspected, but untested in trials: {listed(likely)}." if found.suspects else ""
-    doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)
-    plan = found.next_experiment.sentence if found.next_experiment and doubtful else ""
+    few = "few blind trials have tested this"
+    suspected = f"Suspected ({few}): {listed(likely)}." if found.suspects else ""
     why = doubt if found.verdict == "unexplained" else ""
-    every = (opening, suspected, tie, not_excluded, why, misfit, remains, plan)
+    every = (opening, suspected, tie, not_excluded, why, misfit, remains, found.advice)
     return " ".join(part for part in every if part)

@@ -17,13 +17,36 @@ from rr_opt.formatting import words_of
 from rr_opt.messages import listed
 from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.constancy import Constancy, constancy, overdispersion
-from rr_opt.sysid.diagnosis import Estimate, Finding, Remainder, Tried, Verdict
+from rr_opt.sysid.diagnosis import Estimate, Finding, Remainder, Tie, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
 from rr_opt.sysid.intervals import estimates, instead_of, joint, wrong
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.remainder import Dependence, where
 from rr_opt.sysid.selection import Selection
 from rr_opt.sysid.settings import SETTINGS
+
+_CHANGED = "Check whether something changed between the recordings."
+_DIFFER = "Record gaits that differ more."
+_LOOK = "Look for a cause where the remaining misfit shows."
+
+_DISAGREE = "the recordings disagree on the values"
+_SO_MANY = "that many effects can mimic almost anything"
+_EXCEEDS = "the remaining misfit exceeds the usual error of such models"
+_UNCONFIRMED = "the held-out recordings do not confirm it"
+_LEAD = "its lead is too small for these recordings to be conclusive"
+_REMAINS = "most of the misfit remains"
+_OTHERS = "others do about as well"
+
+_REMEDIES = {
+    _DISAGREE: _CHANGED,
+    _SO_MANY: _DIFFER,
+    _EXCEEDS: _LOOK,
+    _UNCONFIRMED: "Check the held-out recordings, or fit them too and hold out others.",
+    _LEAD: "Record more gaits, or for longer.",
+    _REMAINS: _LOOK,
+    _OTHERS: _DIFFER,
+}
+"""Why the best candidate is not named, and what to do about it."""
 
 
 @dataclass(frozen=True)
@@ -105,33 +128,35 @@ class Identification:
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
         if not best.effects:
             return ""
-        disagree = "the recordings disagree on the values"
-        so_many = "that many effects can mimic almost anything"
         reasons = {
-            disagree if self._disagree else so_many: self._constant,
-            "the remaining misfit exceeds the usual error of such models": self._as_machines_differ,
-            "the held-out recordings do not confirm it": self._predicts,
+            _DISAGREE if self._disagree else _SO_MANY: self._constant,
+            _EXCEEDS: self._as_machines_differ,
+            _UNCONFIRMED: self._predicts,
         }
         against = [reason for reason, likely in reasons.items() if likely <= SETTINGS.named]
         if not against and self.sound <= SETTINGS.named:
             against = [min(reasons, key=lambda reason: reasons[reason])]
         if not best.predicts_better(self.selection.base):
-            against = ["its lead is too small for these recordings to be conclusive"]
+            against = [_LEAD]
         elif not self.best.choices:
-            against = ["most of the misfit remains"]
-        names = listed(words_of(name) for name in best.effects)
-        return f"The best candidate is {names}, but {listed(against) or 'others do about as well'}."
+            against = [_REMAINS]
+        names, against = listed(words_of(name) for name in best.effects), against or [_OTHERS]
+        why = f"The best candidate is {names}, but {listed(against)}."
+        return " ".join([why, *dict.fromkeys(_REMEDIES[reason] for reason in against)])
 
     def _hints(self) -> Iterator[str]:
         """What is known of what is missing if the fitted recordings leave no misfit to explain."""
         certain = [one for one in self.after if one.certain]
         if self._disagree:
-            yield "The recordings disagree on the values of the nominal model."
+            yield f"The recordings disagree on the values of the nominal model. {_CHANGED}"
         if certain and remainder_of(self).size == "none":
             found = where(certain[0], self.selection.model.inputs)
             yield f"What remains is slight, but it is not noise: it looks like {found}."
         if not (self.selection.foreseen and (self._disagree or certain)):
-            yield "Held-out recordings show the missing physics better than fitted ones: fit them."
+            yield (
+                "The missing physics shows mainly in the held-out recordings. Change them to "
+                "`use: fit`, hold out others, and diagnose again."
+            )
 
     @property
     def _predicts(self) -> float:
@@ -216,9 +241,7 @@ class Identification:
     def share(self) -> float:
         """Share of the nominal model's misfit beyond the noise (mean square) that remains, 0 to 1,
         on held-out recordings if there are any."""
-        before = max(self.nominal.excess, self.selection.base.excess)
-        left = self.final.excess / before if before > 0 else 0.0
-        return min(left**2, 1.0)
+        return _share(self, self.final)
 
     @property
     def rivals(self) -> list[Candidate]:
@@ -276,9 +299,16 @@ def wrong_values(result: Identification) -> tuple[Finding, ...]:
     )
 
 
-def remainder_of(result: Identification) -> Remainder:
-    """The misfit that remains with the answer's effects."""
-    after, share = result.final.excess, result.share
+def _share(result: Identification, last: Evaluation) -> float:
+    before = max(result.nominal.excess, result.selection.base.excess)
+    left = last.excess / before if before > 0 else 0.0
+    return min(left**2, 1.0)
+
+
+def remainder_of(result: Identification, last: Evaluation | None = None) -> Remainder:
+    """The misfit that remains with the answer's effects, or with other values."""
+    last = last or result.final
+    after, share = last.excess, _share(result, last)
     large = "small" if share <= SETTINGS.small else "large"
     slight = math.hypot(SETTINGS.none, result.selection.model.form_error)
     size = "none" if after <= slight else large
@@ -301,13 +331,13 @@ def tried(selection: Selection, accepted: Candidate | None) -> tuple[Tried, ...]
     )
 
 
-def alike(result: Identification, verdict: Verdict) -> tuple[tuple[str, ...], ...]:
+def ties(result: Identification, verdict: Verdict) -> tuple[Tie, ...]:
     """Sets of effects that predict the recordings about as well as the answer does, or values that
     explain them as well as a wrong one."""
     if verdict == "parameters":
         fit = result.best.fit
-        both = ((q.name, *instead_of(fit, q.name)) for q in wrong(fit))
-        return tuple(one for one in both if len(one) > 1)
+        both = (Tie((q.name,), tuple(instead_of(fit, q.name))) for q in wrong(fit))
+        return tuple(one for one in both if one.rival)
     if verdict != "missing_physics" and not result.suspected:
         return ()
     own, catalogue = result.best, result.selection.model.catalogue
@@ -318,8 +348,7 @@ def alike(result: Identification, verdict: Verdict) -> tuple[tuple[str, ...], ..
         gain, error = own.advantage(one)
         if gain < max(SETTINGS.evidence, SETTINGS.standard_errors * error) and one.effects:
             near.append(tuple(one.effects))
-    groups = [tuple(dict.fromkeys((*own.effects, *one))) for one in near]
-    return tuple(dict.fromkeys(groups))
+    return tuple(Tie(tuple(own.effects), one) for one in dict.fromkeys(near))
 
 
 def rival_of(result: Identification) -> tuple[str, Candidate] | None:

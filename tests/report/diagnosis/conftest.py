@@ -20,6 +20,7 @@ from rr_opt.sysid.diagnosis import (
     Remainder,
     Residue,
     Stage,
+    Tie,
     Tried,
 )
 from tests.robots import BENCHMARK
@@ -109,7 +110,7 @@ def _found(experiment):
             Tried(("quadratic_drag",), float("nan"), 1900.0, {}, False),
             Tried((), 8.0, 3000.0, {}, False),
         ),
-        indistinguishable=(("coulomb_friction", "floor_patch"),),
+        ties=(Tie(("coulomb_friction",), ("floor_patch",)),),
         next_experiment=NextExperiment(
             0.9, 0.8, 0.1, 30.0, "rest", 0.0, ("coulomb_friction", "floor_patch"), 4.2,
             "Drive the same gait over another part of the floor.",
@@ -145,7 +146,7 @@ def wrong_values(missing):
         channel="none",
         stages=(),
         findings=(Finding("kappa1", 1.0, MappingProxyType({"kappa1": kappa}), 1.0),),
-        indistinguishable=(),
+        ties=(),
         next_experiment=None,
         parameters={name: missing.found.parameters[name] for name in ("m1", "kappa1")},
         values={name: missing.found.values[name] for name in ("m1", "kappa1")},

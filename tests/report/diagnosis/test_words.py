@@ -1,11 +1,16 @@
 """A value is reported in the unit of the bench, with as many digits as its interval allows."""
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from rr_opt.results.diagnosis_tables import headline, interval_text, value_text
-from rr_opt.sysid.diagnosis import Estimate
+from rr_opt.machines.pendulum import PENDULUM
+from rr_opt.results.diagnosis_tables import headline, interval_text, tie_text, value_text
+from rr_opt.results.machine_diagnosis import ExplainedMachine
+from rr_opt.sysid.diagnosis import Estimate, Tie
 
 
 @pytest.mark.parametrize(
@@ -33,7 +38,40 @@ def test_headlines_say_the_verdict(every):
     assert said["missing_physics"] == "The model leaves out Coulomb friction"
     assert "wheel friction of platform 1 differs from nominal" in said["parameters"]
     assert "explains the recordings" in said["consistent"]
-    assert "no known effect" in said["unexplained"]
+    assert said["unexplained"] == "Physics is missing, but no effect could be named"
+
+
+@pytest.mark.parametrize(
+    ("verdict", "answer", "rival", "text"),
+    [
+        ("missing_physics", "servo_lag", "floor_patch floor_tilt",
+         "servo lag from floor patch and floor tilt"),
+        ("missing_physics", "servo_lag floor_tilt", "floor_tilt",
+         "servo lag and floor tilt from floor tilt alone"),
+        ("parameters", "I1", "m1 c1", "a wrong I1 from a wrong m1 or c1"),
+    ],
+)  # fmt: skip
+def test_a_tie_says_what_stands_against_what(every, verdict, answer, rival, text):
+    tie = Tie(tuple(answer.split()), tuple(rival.split()))
+    assert tie_text(tie, every[verdict].found) == text
+
+
+def test_the_headline_of_another_machine_has_one_article(wrong_values):
+    wrong = replace(wrong_values.found.findings[0], name="J")
+    made: Any = SimpleNamespace(
+        found=replace(wrong_values.found, findings=(wrong,)),
+        experiment=SimpleNamespace(machine=PENDULUM),
+    )
+    assert ExplainedMachine.headline.fget(made) == (  # pyright: ignore
+        "The model is right, but the moment of inertia about the axis differs from nominal"
+    )
+
+
+def test_a_file_of_unestablished_effects_says_so(every):
+    (text,) = every["unexplained"]._tables().values()
+    assert text.splitlines()[1].endswith("any effects among them are not established.")
+    (text,) = every["missing_physics"]._tables().values()
+    assert text.splitlines()[1].startswith("# From trial by rr-opt")
 
 
 @pytest.mark.parametrize("verdict", ["consistent", "parameters", "missing_physics", "unexplained"])
@@ -50,6 +88,13 @@ def test_the_terminal_tells_what_remains(missing, unexplained):
 
     assert row(missing).split() == ["remainder", "none"]
     # Of the noise alone 1, and 7.90 beyond it.
-    assert "large: misfit 7.96 σ, 97 % of the initial excess over the noise" in row(unexplained)
+    assert "large: misfit 7.96 σ, 97 % of the initial misfit beyond the noise" in row(unexplained)
     assert "depends on the speed" in unexplained.summary()
     assert any(line.startswith("indistinguishable") for line in missing.summary().splitlines())
+
+
+def test_the_next_recording_is_asked_for_as_in_the_summary(missing, consistent):
+    plan = missing.found.next_experiment
+    assert any(line.startswith("record next") for line in missing.summary().splitlines())
+    settled = replace(consistent, found=replace(consistent.found, next_experiment=plan))
+    assert plan.sentence not in settled.summary()

@@ -38,6 +38,8 @@ _TOLD_APART = 0.3
 _NARROWER = 1.1
 """Factor by which a recording has to narrow an interval to be worthwhile."""
 
+_THEN = "Add it to experiment.yaml and diagnose again."
+
 _AT_ONCE = 8
 """Plans that are simulated together."""
 _STATE_STEPS = 3
@@ -63,22 +65,19 @@ def next_experiment(
         )
         k = int(np.argmax(apart))
         if apart[k] > _TOLD_APART:
-            gait, both = plans[k].gait, words_of(f"{_names(best)} and {name}")
             sentence = (
-                f"Record {plans[k].seconds:.0f} s at amplitude {gait.amplitude:.2f} rad, period "
-                f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, start: {plans[k].start}. Even "
-                f"after refitting, {both} would differ by {apart[k]:.1f} sigma."
+                f"{plans[k].asked} If the cause is {words_of(_names(best))}, a model with "
+                f"{words_of(name)} would miss this recording by {apart[k]:.1f} sigma even after "
+                f"refitting. {_THEN}"
             )
             return _answer(plans[k], (_names(best), name), float(apart[k]), sentence)
     known = _narrowed(best, (_planned(racer, best, some) for some in batches))
     if known is None:
         return None
     k, quantity, factor, apart = known
-    gait = plans[k].gait
     sentence = (
-        f"Record {plans[k].seconds:.0f} s at amplitude {gait.amplitude:.2f} rad, period "
-        f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, start: {plans[k].start}. This would "
-        f"narrow the interval of {words_of(quantity)} by a factor of {factor:.1f}."
+        f"{plans[k].asked} This would narrow the interval of {words_of(quantity)} by a factor of "
+        f"{factor:.1f}. {_THEN}"
     )
     return _answer(plans[k], (_names(best), quantity), apart, sentence)
 
@@ -89,6 +88,17 @@ class _Plan:
     def __init__(self, gait: SineGait, seconds: float, start: Start, heading: float) -> None:
         self.gait, self.seconds, self.heading = gait, seconds, heading
         self.start: Start = start
+
+    @property
+    def asked(self) -> str:
+        """What to record, as a sentence."""
+        gait = self.gait
+        begun = "starting from rest" if self.start == "rest" else "already driving"
+        return (
+            f"Record {self.seconds:.0f} s at amplitude {gait.amplitude:.2f} rad, period "
+            f"{gait.period:.2f} s and offset {gait.offset:.2f} rad, {begun} at "
+            f"psi = {math.degrees(self.heading):.0f} deg."
+        )
 
 
 def _answer(
