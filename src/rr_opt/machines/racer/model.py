@@ -14,6 +14,7 @@ from rr_opt.effects.effect import OperatingRange
 from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, effect_info, nominal, uncertain
 from rr_opt.machines.racer.simulation import Simulator, side_speeds, slips
 from rr_opt.model.experiment import CHANNELS, Experiment, Run
+from rr_opt.recordings.time_axis import jumping, time_step
 from rr_opt.sysid.model import (
     ChannelNoise,
     Data,
@@ -229,14 +230,22 @@ def _travelled(data: Data) -> Array:
 
 
 def _data(run: Run, noise: Sequence[ChannelNoise]) -> Data:
+    """Its recording, with empty rows for those missing from its file: a step between samples is no
+    longer than usual."""
     recording = run.recording
-    values = np.column_stack([recording.data(name) for name in CHANNELS])
+    steps = np.diff(recording.t) / time_step(recording.t)
+    rows = np.where(jumping(steps), np.rint(steps), 1).astype(int)
+    of = np.repeat(np.arange(rows.size + 1), np.append(rows, 1))
+    at = np.append(0, np.cumsum(rows))
+    t = np.interp(np.arange(of.size), at, recording.t)
+    values = np.full((of.size, len(CHANNELS)), np.nan)
+    values[at] = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":
-        t, bounces = recording.t, SETTINGS.bouncing * run.gait.period
+        bounces = SETTINGS.bouncing * run.gait.period
         values[(t >= 0) & (t < SETTINGS.starting)] = np.nan
         values[(t >= 0) & (t < bounces), CHANNELS.index("phi")] = np.nan
-    sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
+    sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])[of]
     sigma = sigma * [one.level for one in noise]
     correlation = np.array([one.correlation for one in noise])
     held_out = run.use == "holdout"
-    return Data(run.name, recording.t, values, sigma, held_out, correlation=correlation)
+    return Data(run.name, t, values, sigma, held_out, correlation=correlation)
