@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from rr_opt.machines.racer.drive import drive_path, grain, steps_of
-from rr_opt.machines.racer.observed import observed
+from rr_opt.machines.racer.observed import Along, observed
 from rr_opt.machines.racer.parameters import values_of
 from rr_opt.machines.racer.simulation import driven
-from rr_opt.machines.racer.unknown_input import cut, linearised_inputs
+from rr_opt.machines.racer.unknown_input import _VARIABLES, _Moving, cut, linearised_inputs
 from rr_opt.sysid.model import Request, Segment
 from rr_opt.sysid.shooting import predict
 from tests.sysid.made_up import with_effect
@@ -124,3 +124,20 @@ def test_the_inputs_of_pieces_are_those_of_the_whole_that_are_zero_elsewhere():
             other.gram / np.outer(size, size), abs=1e-9
         )
         assert one.end == pytest.approx(other.end, abs=1e-9 * np.abs(other.end).max())
+
+
+@pytest.mark.parametrize("name", ["time", "place"])
+def test_a_variable_has_one_scale_along_a_run(name):
+    model = with_effect({}, ())
+    segments = [Segment(1, 0, 501, 500), Segment(1, 0, 250, 250), Segment(1, 250, 501, 500)]
+    data, made = model.runs[1], []
+    whole = np.vstack([data.t, data.values[:, :2].T])
+    for one in segments:
+        t, x, y, psi = (part[one.span] for part in (data.t, *data.values[:, :3].T))
+        along = Along(t, x, y, psi, np.ones((4, t.size)), np.zeros((4, 2, t.size)))
+        moving = _Moving(along, t, 1.0, whole)
+        made.append([f(t, moving) for f in _VARIABLES[name].functions])
+    for run, *parts in zip(*made, strict=True):
+        for part, one in zip(parts, segments[1:], strict=True):
+            np.testing.assert_allclose(part, run[one.span])
+        assert np.ptp(run) == pytest.approx(1.0)

@@ -313,11 +313,15 @@ class _Variable:
 
 @dataclass(frozen=True)
 class _Moving:
-    """A recorded path, the phase of its gait (n,), and the usual speed, m/s."""
+    """A recorded path, the phase of its gait (n,), and the usual speed, m/s.
+
+    whole  of its run (3, m): t, s, and x, y, m
+    """
 
     along: Along
     phase: Array
     usual: float
+    whole: Array
 
     @property
     def speed(self) -> Array:
@@ -330,8 +334,11 @@ _ACROSS = np.linspace(-2.0, 2.0, 41)
 _NONE = np.zeros(0)
 
 
-def _centred(x: Array) -> Array:
-    return (x - x.mean()) / max(float(np.ptp(x)), 1e-3)
+def _centred(x: Array, whole: Array) -> Array:
+    """x relative to the range of its whole run: the same place, or time, is the same in each of the
+    run's segments."""
+    low, high = float(np.nanmin(whole)), float(np.nanmax(whole))
+    return (x - (low + high) / 2) / max(high - low, 1e-3)
 
 
 _VARIABLES: Mapping[str, _Variable] = {
@@ -353,11 +360,14 @@ _VARIABLES: Mapping[str, _Variable] = {
     "place": _Variable(
         "m",
         lambda m: m.along.x,
-        (lambda _, m: m.speed * _centred(m.along.x), lambda _, m: m.speed * _centred(m.along.y)),
+        (
+            lambda _, m: m.speed * _centred(m.along.x, m.whole[1]),
+            lambda _, m: m.speed * _centred(m.along.y, m.whole[2]),
+        ),
         _NONE,
     ),
     "time": _Variable(
-        "s", lambda m: m.along.t, (lambda x, m: m.speed * x / max(float(x[-1]), 1e-9),), _NONE
+        "s", lambda m: m.along.t, (lambda x, m: m.speed * (_centred(x, m.whole[0]) + 0.5),), _NONE
     ),
     CONSTANT: _Variable("", lambda m: m.along.t, (lambda x, _: np.ones_like(x),), _NONE),
 }
@@ -374,7 +384,9 @@ def unknown_terms(
     requests, every, terms = fit.problem.requests(fit.values, fit.states), [], []
     for request, along in zip(requests, observed(racer, requests, fit.effects), strict=True):
         gait = racer.experiment.runs[request.segment.run].gait
-        moving = _Moving(along, 2 * math.pi * along.t / gait.period, usual)
+        data = racer.runs[request.segment.run]
+        whole = np.vstack([data.t, data.values[:, :2].T])
+        moving = _Moving(along, 2 * math.pi * along.t / gait.period, usual, whole)
         terms, columns = _terms(moving, sizes)
         every.append(columns)
     parts = linearised_inputs(racer, requests, fit.effects, fit.problem.names, every)
