@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.machines.racer.observed import observed
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.sysid.model import Data, segments
-from tests.sysid.made_up import experiment, predicted
+from rr_opt.sysid.model import Data, Request, Segment, segments
+from tests.sysid.made_up import experiment, predicted, with_effect
 
 
 @pytest.mark.parametrize("until", [50, 99])
@@ -54,3 +55,16 @@ def test_late_rows_are_no_missing_ones():
     recording = replace(run.recording, t=late)
     model = RollerRacer(replace(given, runs=(replace(run, recording=recording),)))
     np.testing.assert_array_equal(model.runs[0].t, late)
+
+
+@pytest.mark.parametrize("lost", [[0], [2], [0, 1, 2]])
+def test_a_part_without_data_begins_at_the_nearest(lost):
+    model = with_effect({}, ())
+    part = Segment(1, 200, 400, 400)
+    data = model.runs[1]
+    data.values[190:410, lost] = np.nan
+    start = model.initial_state(part, (), {})
+    np.testing.assert_array_equal(start[lost], data.values[189, lost])
+    (seen,) = observed(model, [Request(part, {}, start)], ())
+    assert np.isfinite([seen.x, seen.y, seen.psi]).all()
+    assert np.isfinite(seen.u).all()

@@ -140,11 +140,11 @@ class RacerModel:
     def initial_state(
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
     ) -> Array:
-        """x, y, psi as first recorded; for z, which swings less than v, the mean of v; side speeds
-        estimated from the first samples."""
+        """x, y, psi as first recorded, or nearest to a segment without data; for z, which swings
+        less than v, the mean of v; side speeds estimated from the first samples."""
         data, run = self.runs[segment.run], self.experiment.runs[segment.run]
         t, recorded = data.t[segment.span], data.values[segment.span]
-        first = [column[np.isfinite(column)][0] for column in recorded.T[:3]]
+        first = [_first(column, segment) for column in data.values.T[:3]]
         # The mean speed along the axis over the first period is near enough to begin with.
         seen = recorded[(t - t[0] <= run.gait.period) & np.isfinite(recorded[:, :3]).all(axis=1)]
         took = max(min(run.gait.period, t[-1] - t[0]), 1e-9)
@@ -218,6 +218,15 @@ class RacerModel:
         if any(name in self.experiment.uncertainty for name in ZEROS.values()):
             given |= {ZERO_OFFSET}
         return Simulator(self.experiment.runs, self.runs, self.nominal, given)
+
+
+def _first(y: Array, segment: Segment) -> float:
+    """The first of a run's values (n,) in a segment; without any, the one nearest to its begin."""
+    known = np.flatnonzero(np.isfinite(y))
+    inside = known[(known >= segment.first) & (known <= segment.last)]
+    if inside.size:
+        return float(y[inside[0]])
+    return float(y[known[np.argmin(np.abs(known - segment.first))]])
 
 
 def _travelled(data: Data) -> Array:
