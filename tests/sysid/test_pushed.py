@@ -1,13 +1,18 @@
 """A push as a function of time moves the robot as the effect does that pushes so."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rr_opt.machines.racer.observed import observed
-from rr_opt.machines.racer.unknown_input import cut, linearised_inputs
+from rr_opt.machines.racer.drive import drive_path, grain, steps_of
+from rr_opt.machines.racer.observed import Along, observed
+from rr_opt.machines.racer.parameters import values_of
+from rr_opt.machines.racer.simulation import driven
+from rr_opt.machines.racer.unknown_input import _VARIABLES, _Moving, cut, linearised_inputs
 from rr_opt.sysid.model import Request, Segment
+from rr_opt.sysid.shooting import predict
 from tests.sysid.made_up import with_effect
 
 SEGMENT = Segment(1, 0, 300, 299)
@@ -52,6 +57,37 @@ def test_its_column_is_that_of_the_effect(name):
     )
 
 
+@pytest.mark.parametrize(
+    "values", [{}, {"lateral_slip.creep_compliance": 0.01, "lateral_slip.mu": 10.0}]
+)
+def test_a_bump_of_the_angle_moves_the_robot_as_the_servo_would(values):
+    effects = ("lateral_slip",) if values else ()
+    model = with_effect({}, (), rate=100.0, seconds=3.0)
+    data, segment = model.runs[1], Segment(1, 0, 300, 299)
+    start = model.initial_state(segment, effects, values)
+    given = model.simulator.given(values)
+    system, motion = driven(effects)
+    t, size = data.t[:300], 1e-3
+    drive = model.simulator.drives.of(1, given, effects)
+    steps = steps_of(drive, t, 0.0, **grain(given, effects))
+    p = values_of(given, motion.parameters)
+
+    def bump(t):
+        x = (t - 1.5) / 0.1
+        return np.exp(-x * x / 2) * np.array([1 + 0 * x, -x / 0.1, (x * x - 1) / 0.1**2])
+
+    def moved(by):
+        servo = replace(drive, at=lambda t: drive.at(t) + by * bump(t))
+        return predict(system, drive_path(servo, steps, 0.0), start, p).states[:, -1]
+
+    expected = (moved(size) - moved(-size)) / (2 * size)
+    pushes = np.zeros((1, 7, 300))
+    pushes[0, 6] = bump(t)[0]
+    request = Request(segment, values, start)
+    (pushed,) = linearised_inputs(model, [request], effects, (), [pushes])
+    assert pushed.end[:, -1] == pytest.approx(expected, abs=0.02 * np.abs(expected).max())
+
+
 def test_where_nothing_is_wanted_it_is_the_plain_linearisation():
     model = with_effect({}, ())
     request = Request(SEGMENT, {}, model.initial_state(SEGMENT, (), {}))
@@ -88,3 +124,20 @@ def test_the_inputs_of_pieces_are_those_of_the_whole_that_are_zero_elsewhere():
             other.gram / np.outer(size, size), abs=1e-9
         )
         assert one.end == pytest.approx(other.end, abs=1e-9 * np.abs(other.end).max())
+
+
+@pytest.mark.parametrize("name", ["time", "place"])
+def test_a_variable_has_one_scale_along_a_run(name):
+    model = with_effect({}, ())
+    segments = [Segment(1, 0, 501, 500), Segment(1, 0, 250, 250), Segment(1, 250, 501, 500)]
+    data, made = model.runs[1], []
+    whole = np.vstack([data.t, data.values[:, :2].T])
+    for one in segments:
+        t, x, y, psi = (part[one.span] for part in (data.t, *data.values[:, :3].T))
+        along = Along(t, x, y, psi, np.ones((4, t.size)), np.zeros((4, 2, t.size)))
+        moving = _Moving(along, t, 1.0, whole)
+        made.append([f(t, moving) for f in _VARIABLES[name].functions])
+    for run, *parts in zip(*made, strict=True):
+        for part, one in zip(parts, segments[1:], strict=True):
+            np.testing.assert_allclose(part, run[one.span])
+        assert np.ptp(run) == pytest.approx(1.0)

@@ -163,12 +163,17 @@ def check_rate(rate: float, file: str, line: int | None = None) -> None:
         )
 
 
+def jumping(steps: Array) -> NDArray[np.bool_]:
+    """Whether rows are missing within each step, counted in usual ones. The steps about a late row
+    compensate for it; those about a missing one do not."""
+    around = np.convolve(np.concatenate([[1.0], steps, [1.0]]), np.ones(3), "valid")
+    return (steps > LACKING) & (around > LACKING + 2)
+
+
 def time_notices(t: Array, rate: float, stated: float | None = None) -> Iterator[Notice]:
     """What is odd about increasing times (n >= 2) that come at a rate, Hz; stated: by a header."""
     steps = np.diff(t) * rate
-    # The steps about a late row compensate for it; those about a missing one do not.
-    around = np.convolve(np.concatenate([[1.0], steps, [1.0]]), np.ones(3), "valid")
-    jumps = np.flatnonzero((steps > LACKING) & (around > LACKING + 2))
+    jumps = np.flatnonzero(jumping(steps))
     if len(jumps):
         listed = ", ".join(
             f"{steps[at] / rate:.4g} s at t = {t[at]:.6g} s" for at in jumps[:_LISTED]

@@ -14,6 +14,7 @@ from rr_opt.effects.effect import OperatingRange
 from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, effect_info, nominal, uncertain
 from rr_opt.machines.racer.simulation import Simulator, side_speeds, slips
 from rr_opt.model.experiment import CHANNELS, Experiment, Run
+from rr_opt.recordings.time_axis import jumping, time_step
 from rr_opt.sysid.model import (
     ChannelNoise,
     Data,
@@ -139,11 +140,11 @@ class RacerModel:
     def initial_state(
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
     ) -> Array:
-        """x, y, psi as first recorded; for z, which swings less than v, the mean of v; side speeds
-        estimated from the first samples."""
+        """x, y, psi as first recorded, or nearest to a segment without data; for z, which swings
+        less than v, the mean of v; side speeds estimated from the first samples."""
         data, run = self.runs[segment.run], self.experiment.runs[segment.run]
         t, recorded = data.t[segment.span], data.values[segment.span]
-        first = [column[np.isfinite(column)][0] for column in recorded.T[:3]]
+        first = [_first(column, segment) for column in data.values.T[:3]]
         # The mean speed along the axis over the first period is near enough to begin with.
         seen = recorded[(t - t[0] <= run.gait.period) & np.isfinite(recorded[:, :3]).all(axis=1)]
         took = max(min(run.gait.period, t[-1] - t[0]), 1e-9)
@@ -219,6 +220,15 @@ class RacerModel:
         return Simulator(self.experiment.runs, self.runs, self.nominal, given)
 
 
+def _first(y: Array, segment: Segment) -> float:
+    """The first of a run's values (n,) in a segment; without any, the one nearest to its begin."""
+    known = np.flatnonzero(np.isfinite(y))
+    inside = known[(known >= segment.first) & (known <= segment.last)]
+    if inside.size:
+        return float(y[inside[0]])
+    return float(y[known[np.argmin(np.abs(known - segment.first))]])
+
+
 def _travelled(data: Data) -> Array:
     """Distance travelled, m (n,), from places half a second apart, to suppress noise."""
     seen = np.isfinite(data.values[:, :2]).all(axis=1)
@@ -229,14 +239,22 @@ def _travelled(data: Data) -> Array:
 
 
 def _data(run: Run, noise: Sequence[ChannelNoise]) -> Data:
+    """Its recording, with empty rows for those missing from its file: a step between samples is no
+    longer than usual."""
     recording = run.recording
-    values = np.column_stack([recording.data(name) for name in CHANNELS])
+    steps = np.diff(recording.t) / time_step(recording.t)
+    rows = np.where(jumping(steps), np.rint(steps), 1).astype(int)
+    of = np.repeat(np.arange(rows.size + 1), np.append(rows, 1))
+    at = np.append(0, np.cumsum(rows))
+    t = np.interp(np.arange(of.size), at, recording.t)
+    values = np.full((of.size, len(CHANNELS)), np.nan)
+    values[at] = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":
-        t, bounces = recording.t, SETTINGS.bouncing * run.gait.period
+        bounces = SETTINGS.bouncing * run.gait.period
         values[(t >= 0) & (t < SETTINGS.starting)] = np.nan
         values[(t >= 0) & (t < bounces), CHANNELS.index("phi")] = np.nan
-    sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
+    sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])[of]
     sigma = sigma * [one.level for one in noise]
     correlation = np.array([one.correlation for one in noise])
     held_out = run.use == "holdout"
-    return Data(run.name, recording.t, values, sigma, held_out, correlation=correlation)
+    return Data(run.name, t, values, sigma, held_out, correlation=correlation)

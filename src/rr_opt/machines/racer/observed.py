@@ -77,12 +77,13 @@ def _observed(
 
 
 def _smooth(t: Array, predicted: Array, off: Array) -> tuple[Array, Array]:
-    """The prediction plus its error, both (n, k), without noise, and its rate of change (k, n)."""
+    """The prediction plus its error, both (n, k), without noise, and its rate of change (k, n).
+    Where nothing was recorded the prediction stands."""
     step = float(np.median(np.diff(t)))
     half = max(round(_WINDOW / step / 2), 2)
     for column in off.T:
         good = np.isfinite(column)
-        column[~good] = np.interp(t[~good], t[good], column[good])
+        column[~good] = np.interp(t[~good], t[good], column[good]) if good.any() else 0.0
     value, slope = _parabolas(off, half, step)
     return (predicted + value).T, (np.gradient(predicted, t, axis=0) + slope).T
 

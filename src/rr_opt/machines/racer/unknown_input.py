@@ -37,8 +37,9 @@ from rr_opt.sysid.shooting import DrivePath, System
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
 
-DRIVES = (*PUSHES[:6], "side1dot", "side2dot", "angle", "angledot")
-"""Drives of the motion beside the servo: side speeds and the angle with their rates of change."""
+DRIVES = (*PUSHES[:6], "side1dot", "side2dot", "angle", "angledot", "angledotdot")
+"""Drives of the motion beside the servo: side speeds and the angle with their rates of change, the
+last of which only wheels that slip feel."""
 
 FURTHER = 8
 """How many of them are not the servo's own."""
@@ -130,9 +131,9 @@ def linearised_inputs(
         path, made = fine.coarser(each), predicted.coarser(each)
         t = racer.runs[segment.run].t[segment.span]
         moments = _moments(path, t)
-        plain = _with_drives(path, np.zeros((len(DRIVES), t.size)), moments)
+        plain = _widened_path(path)
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
-        rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
+        rows = np.roll(np.arange(len(plain.at)), FURTHER)
         every.append((pushes, t))
         own = own and _widened(own.coarser(each))
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
@@ -158,17 +159,18 @@ def cut(samples: int, pieces: int) -> NDArray[np.int_]:
 
 
 def _with_inputs(how: LinearMotion, drives: Array, pieces: int) -> tuple[LinearMotion, Array]:
-    """The motion with inputs as DRIVES (k, 10, n) among the wanted quantities; and what those of a
+    """The motion with inputs as DRIVES (k, 11, n) among the wanted quantities; and what those of a
     piece have done by its first sample (pieces, size, k)."""
     wanted = how.by_wanted.shape[2]
-    at = np.ascontiguousarray(drives.transpose(2, 1, 0))
+    rows = how.by_drive.shape[2]
+    at = np.ascontiguousarray(drives[:, :rows].transpose(2, 1, 0))
     earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
     late = later @ at[1:]
     before = cut(len(at), pieces)[1:-1] - 1
     begun = np.concatenate([np.zeros((1, *late.shape[1:])), late[before]])
     late[before] = 0.0
     B = np.concatenate([how.B[:, :, :wanted], earlier @ at[:-1] + late], axis=2)
-    direct = how.by_drive[:, :, [*range(-FURTHER, 0), 0, 1]] @ at
+    direct = np.roll(how.by_drive, FURTHER, axis=2) @ at
     by_wanted = np.concatenate([how.by_wanted, direct], axis=2)
     return replace(how, B=B, by_wanted=by_wanted), begun
 
@@ -251,17 +253,27 @@ def _widened(own: DriveSlopes) -> DriveSlopes:
     return DriveSlopes(at, middle, own.columns)
 
 
+def _widened_path(path: DrivePath) -> DrivePath:
+    """The servo's path, with zero rows for the pushes."""
+    nodes, at = (
+        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))])
+        for part in (path.nodes, path.at)
+    )
+    return replace(path, nodes=nodes, at=at)
+
+
 def _passed(moments: Array) -> Array:
     """Fraction of the time between two samples that has passed in the middle of each step."""
     return moments[1::2] - np.arange((moments.size - 1) // 2)
 
 
 def _drives(pushes: Array, t: Array) -> Array:
-    """Pushes (k, 7, n) as DRIVES (k, 10, n): with the rates of change that go with them."""
+    """Pushes (k, 7, n) as DRIVES (k, 11, n): with the rates of change that go with them."""
     moved = pushes[:, 4:]
     changes = np.gradient(moved, t, axis=2) if moved.any() else moved
+    again = np.gradient(changes[:, 2:], t, axis=2) if moved.any() else moved[:, 2:]
     return np.concatenate(
-        [pushes[:, :_ANGLE], changes[:, :2], pushes[:, _ANGLE:], changes[:, 2:]], axis=1
+        [pushes[:, :_ANGLE], changes[:, :2], pushes[:, _ANGLE:], changes[:, 2:], again], axis=1
     )
 
 
@@ -271,25 +283,6 @@ def _moments(path: DrivePath, t: Array) -> Array:
     both = np.empty(2 * path.h.size + 1)
     both[::2], both[1::2] = edges, (edges[1:] + edges[:-1]) / 2
     return np.interp(both, t, np.arange(t.size))
-
-
-def _with_drives(path: DrivePath, drives: Array, moments: Array) -> DrivePath:
-    """The servo's path with DRIVES (10, n), which are given at the samples."""
-    fine = _finely(drives, moments)
-    nodes = np.stack([fine[:, :-1:2], fine[:, 1::2], fine[:, 2::2]], axis=1)
-    servo, at = path.nodes.copy(), path.at.copy()
-    servo[:2] += nodes[FURTHER:]
-    at[:2] += drives[FURTHER:]
-    return replace(
-        path, nodes=np.concatenate([servo, nodes[:FURTHER]]), at=np.vstack([at, drives[:FURTHER]])
-    )
-
-
-def _finely(drives: Array, moments: Array) -> Array:
-    """Drives (..., n) at moments counted in samples."""
-    before = np.minimum(moments.astype(int), drives.shape[-1] - 2)
-    beyond = moments - before
-    return drives[..., before] * (1 - beyond) + drives[..., before + 1] * beyond
 
 
 CHANNELS: Mapping[str, tuple[float, ...]] = {
@@ -320,11 +313,15 @@ class _Variable:
 
 @dataclass(frozen=True)
 class _Moving:
-    """A recorded path, the phase of its gait (n,), and the usual speed, m/s."""
+    """A recorded path, the phase of its gait (n,), and the usual speed, m/s.
+
+    whole  of its run (3, m): t, s, and x, y, m
+    """
 
     along: Along
     phase: Array
     usual: float
+    whole: Array
 
     @property
     def speed(self) -> Array:
@@ -337,8 +334,11 @@ _ACROSS = np.linspace(-2.0, 2.0, 41)
 _NONE = np.zeros(0)
 
 
-def _centred(x: Array) -> Array:
-    return (x - x.mean()) / max(float(np.ptp(x)), 1e-3)
+def _centred(x: Array, whole: Array) -> Array:
+    """x relative to the range of its whole run: the same place, or time, is the same in each of the
+    run's segments."""
+    low, high = float(np.nanmin(whole)), float(np.nanmax(whole))
+    return (x - (low + high) / 2) / max(high - low, 1e-3)
 
 
 _VARIABLES: Mapping[str, _Variable] = {
@@ -360,11 +360,14 @@ _VARIABLES: Mapping[str, _Variable] = {
     "place": _Variable(
         "m",
         lambda m: m.along.x,
-        (lambda _, m: m.speed * _centred(m.along.x), lambda _, m: m.speed * _centred(m.along.y)),
+        (
+            lambda _, m: m.speed * _centred(m.along.x, m.whole[1]),
+            lambda _, m: m.speed * _centred(m.along.y, m.whole[2]),
+        ),
         _NONE,
     ),
     "time": _Variable(
-        "s", lambda m: m.along.t, (lambda x, m: m.speed * x / max(float(x[-1]), 1e-9),), _NONE
+        "s", lambda m: m.along.t, (lambda x, m: m.speed * (_centred(x, m.whole[0]) + 0.5),), _NONE
     ),
     CONSTANT: _Variable("", lambda m: m.along.t, (lambda x, _: np.ones_like(x),), _NONE),
 }
@@ -381,7 +384,9 @@ def unknown_terms(
     requests, every, terms = fit.problem.requests(fit.values, fit.states), [], []
     for request, along in zip(requests, observed(racer, requests, fit.effects), strict=True):
         gait = racer.experiment.runs[request.segment.run].gait
-        moving = _Moving(along, 2 * math.pi * along.t / gait.period, usual)
+        data = racer.runs[request.segment.run]
+        whole = np.vstack([data.t, data.values[:, :2].T])
+        moving = _Moving(along, 2 * math.pi * along.t / gait.period, usual, whole)
         terms, columns = _terms(moving, sizes)
         every.append(columns)
     parts = linearised_inputs(racer, requests, fit.effects, fit.problem.names, every)

@@ -227,7 +227,7 @@ def _path(ax: Axes, recording: Recording, nominal: Misfit, final: Misfit) -> Non
     known = np.flatnonzero(np.isfinite(seen).all(axis=1))
     if len(known):
         ax.plot(*seen[known[0]], "o", ms=6, color=style.OPTIMUM, mec=style.INK, zorder=4)
-    off = [number(1e3 * _distance(seen, one), 2) for one in (nominal, final)]
+    off = [number(1e3 * _distance(recording.t, seen, one), 2) for one in (nominal, final)]
     held = ", held out" if final.held_out else ""
     ax.set_title(f"{final.recording}{held}\n{off[0]} mm off → {off[1]} mm", fontsize=9.5)
     ax.margins(0.08)
@@ -236,9 +236,11 @@ def _path(ax: Axes, recording: Recording, nominal: Misfit, final: Misfit) -> Non
     ax.locator_params(nbins=5)
 
 
-def _distance(seen: Array, one: Misfit) -> float:
-    """RMS distance between the recorded and the simulated path, m, with the noise in it."""
-    square = np.sum((one.predicted[:, :2] - seen) ** 2, axis=1)
+def _distance(t: Array, seen: Array, one: Misfit) -> float:
+    """RMS distance between the recorded and the simulated path, m, with the noise in it. A misfit
+    has rows also where the recording lacks some."""
+    predicted = one.predicted[np.searchsorted(one.t, t), :2]
+    square = np.sum((predicted - seen) ** 2, axis=1)
     return float(np.sqrt(np.nanmean(square))) if np.isfinite(square).any() else float("nan")
 
 
