@@ -21,7 +21,7 @@ from rr_opt.sysid import diagnose, estimation, selection
 from rr_opt.sysid.diagnosis import groups
 from rr_opt.sysid.model import ChannelNoise, Choice, Segment
 from rr_opt.sysid.settings import SETTINGS, Settings
-from rr_opt.sysid.verdict import findings, ties, verdict_of, wrong_values
+from rr_opt.sysid.verdict import named, ties, verdict_of
 
 AS_CHOSEN = "as chosen"
 OTHER_MACHINES = ("growth", "input_share", "input_noise", "modes", "windows")
@@ -150,12 +150,9 @@ def said(model: RollerRacer) -> dict[str, Any]:
     began = time.process_time()
     result = diagnose.identified(model, diagnose.Stopwatch())
     verdict = verdict_of(result)
-    named = findings(result, result.shown) if verdict == "missing_physics" else ()
-    if verdict == "parameters":
-        named = wrong_values(result)
     return {
         "verdict": verdict,
-        "named": {one.name: one.confidence for one in named},
+        "named": {one.name: one.confidence for one in named(result, verdict)},
         "groups": groups(ties(result, verdict)),
         "cpu": round(time.process_time() - began, 2),
     }

@@ -23,12 +23,12 @@ from rr_opt.sysid.selection import Selection, turned
 from rr_opt.sysid.verdict import (
     Identification,
     findings,
+    named,
     remainder_of,
     rival_of,
     ties,
     tried,
     verdict_of,
-    wrong_values,
 )
 
 
@@ -68,15 +68,13 @@ def diagnose(model: MachineModel, progress: Callable[[str], None] = lambda _: No
 def _answer(result: Identification) -> Diagnosis:
     verdict, selection, best = verdict_of(result), result.selection, result.best
     model, base = selection.model, selection.base
-    named = findings(result, result.shown) if verdict == "missing_physics" else ()
-    if verdict == "parameters":
-        named = wrong_values(result)
+    found = named(result, verdict)
     faulty = verdict in ("missing_physics", "unexplained")
     located = stages(result.before, model.inputs, base.excess, faulty=faulty)
     guilty = next((one for one in located if one.guilty), None)
     channel = guilty.channel if guilty else "none"
-    if verdict == "missing_physics" and named:
-        channel = model.catalogue[named[0].name].channel
+    if verdict == "missing_physics" and found:
+        channel = model.catalogue[found[0].name].channel
     levels = (result.nominal, result.refitted, result.final)
     fit, known, last, beside = best.fit, result.estimates, result.final, result.after
     if verdict == "unexplained":
@@ -94,7 +92,7 @@ def _answer(result: Identification) -> Diagnosis:
         channel=channel,
         where=guilty.where if guilty else "",
         stages=located,
-        findings=named,
+        findings=found,
         suspects=findings(result, result.suspected),
         parameters=known,
         tried=tried(selection, best if verdict != "unexplained" else None),

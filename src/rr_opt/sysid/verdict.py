@@ -290,6 +290,13 @@ def _undecided(result: Identification, choice: Choice) -> Iterator[str]:
             yield words_of(name)
 
 
+def named(result: Identification, verdict: Verdict) -> tuple[Finding, ...]:
+    """The effects that are missing, or the values that are wrong."""
+    if verdict == "parameters":
+        return wrong_values(result)
+    return findings(result, result.shown) if verdict == "missing_physics" else ()
+
+
 def wrong_values(result: Identification) -> tuple[Finding, ...]:
     """The parameters whose nominal values are wrong; the confidence is the probability that
     recordings agree on the values."""

@@ -246,20 +246,17 @@ def _whole(grams: Array, ends: Array, wanted: int) -> tuple[Array, Array]:
 
 def _widened(own: DriveSlopes) -> DriveSlopes:
     """Derivatives of the servo's part of the drive, with zero rows for the pushes."""
-    at, middle = (
-        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))])
-        for part in (own.at, own.middle)
-    )
-    return DriveSlopes(at, middle, own.columns)
+    return DriveSlopes(_padded(own.at), _padded(own.middle), own.columns)
 
 
 def _widened_path(path: DrivePath) -> DrivePath:
     """The servo's path, with zero rows for the pushes."""
-    nodes, at = (
-        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))])
-        for part in (path.nodes, path.at)
-    )
-    return replace(path, nodes=nodes, at=at)
+    return replace(path, nodes=_padded(path.nodes), at=_padded(path.at))
+
+
+def _padded(servo: Array) -> Array:
+    """The servo's rows, then zero rows for the pushes."""
+    return np.concatenate([servo, np.zeros((FURTHER, *servo.shape[1:]))])
 
 
 def _passed(moments: Array) -> Array:
