@@ -81,5 +81,23 @@ def test_none_is_put_beside_itself(monkeypatch):
         "cable": SimpleNamespace(lookalikes=(), forms=(form,)),
     }
     search.model, search.progress = SimpleNamespace(catalogue=known), lambda _: None
-    monkeypatch.setattr(selection, "fitted", lambda _, choices, *__: choices)
-    assert [*Selection._lookalikes(search)] == [(Choice("cable"),)]
+    made = lambda _, choices, *__: SimpleNamespace(choices=choices, given_up=False)  # noqa: E731
+    monkeypatch.setattr(selection, "fitted", made)
+    assert [one.choices for one in Selection._lookalikes(search)] == [(Choice("cable"),)]
+
+
+@pytest.mark.parametrize(("given_up", "sizes"), [(True, [2]), (False, [2, 1])])
+def test_fewer_effects_are_not_tried_where_more_do_not_fit(monkeypatch, given_up, sizes):
+    both = SimpleNamespace(
+        choices=(Choice("friction"), Choice("tilt")), fit=SimpleNamespace(values={})
+    )
+    search: Any = Contest(answer=both)
+    known = {
+        "friction": SimpleNamespace(lookalikes=("cable",)),
+        "cable": SimpleNamespace(forms=(SimpleNamespace(guesses=({},)),)),
+        "tilt": SimpleNamespace(lookalikes=()),
+    }
+    search.model, search.progress = SimpleNamespace(catalogue=known), lambda _: None
+    made = lambda _, choices, *__: SimpleNamespace(choices=choices, given_up=given_up)  # noqa: E731
+    monkeypatch.setattr(selection, "fitted", made)
+    assert [len(one.choices) for one in Selection._lookalikes(search)] == sizes

@@ -1,6 +1,5 @@
-"""Before an effect is settled for, those that a score test cannot see are fitted too."""
+"""When a forward step is settled, and which candidate it takes."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
@@ -8,8 +7,9 @@ from typing import Any
 import pytest
 
 from rr_opt.sysid.candidates import Candidate
-from rr_opt.sysid.model import Choice, EffectInfo, Form, Quantity
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
+from rr_opt.sysid.settings import SETTINGS
 
 
 @dataclass(frozen=True)
@@ -29,48 +29,32 @@ class Made:
         return True
 
 
-def effect(name: str, *, smooth: bool, guesses: tuple[Mapping[str, float], ...] = ({},)):
-    size = Quantity(f"{name}.size", "m", 0.0, 0.3, False, 0.0, 9.0, 0.0)
-    form = Form((size,), guesses)
-    return EffectInfo(name, "rolling", (form,), smooth)
-
-
 class Settling(Selection):
-    """Drag leaves nothing; so does whatever else is fitted, which predicts as in `elpd`."""
+    """Drag leaves nothing; nor does tilt, which predicts as in `elpd`."""
 
     def __init__(self, elpd: float) -> None:
         self.best = Made((), -100.0)  # pyright: ignore
         self.progress = lambda _: None
-        self.elpd, self.guesses = elpd, {}
-        known = [effect("drag", smooth=True), effect("creep", smooth=False)]
-        known.append(effect("patch", smooth=False, guesses=()))
-        catalogue = {one.name: one for one in known}
-        self.prepared: list[tuple[str, ...]] = []
-        self.model: Any = SimpleNamespace(catalogue=catalogue, prepare=self.prepared.extend)
+        self.elpd = elpd
 
     def complete(self, candidate):
         return True
-
-    def fitted(self, choices, guesses, parent=None) -> Any:
-        self.guesses[choices] = guesses
-        return Made(choices, self.elpd)
 
     def _promising(self) -> Any:
         return ()
 
     def _scored(self, promising, size) -> Any:
-        return [Made((Choice("drag"),), 0.0)] if size == 1 else []
+        return [Made((Choice("drag"),), 0.0), Made((Choice("tilt"),), self.elpd)]
 
     def _extended(self) -> Any:
         raise LookupError("not settled")
 
 
-def test_an_effect_without_a_score_is_fitted_from_its_usual_size():
-    selection = Settling(elpd=10.0)
+@pytest.mark.parametrize(("elpd", "taken"), [(10.0, "tilt"), (-10.0, "drag")])
+def test_the_one_that_predicts_better_is_settled_for(elpd, taken):
+    selection = Settling(elpd)
     selection._forward()
-    assert selection.guesses == {(Choice("creep"),): [{"creep.size": 0.3}]}
-    assert selection.prepared == [("creep",)]
-    assert selection.best.effects == ("creep",)
+    assert selection.best.effects == (taken,)
 
 
 def test_a_tie_is_not_settled():
@@ -102,30 +86,6 @@ def test_two_effects_are_tried_where_no_single_one_wins(alone, pairs):
     else:
         selection._forward()
         assert selection.best.effects == ("slip",)
-
-
-def test_they_are_fitted_in_place_of_each_effect_of_a_pair():
-    class Paired(Settling):
-        def complete(self, candidate):
-            return False
-
-        def _scored(self, promising, size) -> Any:
-            return [Made((Choice("drag"), Choice("tilt")), 0.0)] if size == 2 else []
-
-        def _extended(self) -> Any:
-            return []
-
-        def _proposed(self, parent) -> Any:
-            return []
-
-        def _part(self, whole, key) -> Any:
-            return Made(key, -50.0)
-
-    selection = Paired(elpd=10.0)
-    selection._forward()
-    beside = {(Choice(name), Choice("creep")) for name in ("drag", "tilt")}
-    assert set(selection.guesses) == beside
-    assert "creep" in selection.best.effects
 
 
 def test_a_step_that_advances_is_taken_before_one_that_predicts_better():
@@ -186,3 +146,28 @@ def test_a_step_that_leaves_about_as_much_is_not_taken(whole, segments, taken):
     selection = Bending(elpd=0.0)
     selection._forward()
     assert bool(selection.best.choices) == taken
+
+
+def test_effects_are_proposed_unless_others_score_better():
+    def score(*names: str) -> Any:
+        return SimpleNamespace(choices=tuple(Choice(name) for name in names))
+
+    class Scored(Settling):
+        def _scores(self, candidate) -> Any:
+            assert candidate is self.best
+            every = [score(f"effect{k}") for k in range(SETTINGS.promising)]
+            return [every[0], score("slip", "tilt"), *every, score("slip")]
+
+        def _added(self, asked, beside=None) -> Any:
+            return [choices for choices, _ in asked]
+
+    selection, asked = Scored(0.0), []
+
+    def proposals(fit, complete) -> Any:
+        asked.extend(complete)
+        return [(Choice("patch"), {})]
+
+    selection.best = SimpleNamespace(choices=(Choice("drag"),), effects=("drag",), fit=None)  # pyright: ignore
+    selection.model = SimpleNamespace(proposals=proposals)  # pyright: ignore
+    assert [*selection._proposed(selection.best)] == [(Choice("patch"),)]
+    assert asked == ["drag", "slip"]

@@ -12,6 +12,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import fitted
 from rr_opt.sysid.estimation import solve
 from rr_opt.sysid.model import Choice, Request, Segment
+from rr_opt.sysid.score_test import scores
 from tests.sysid.made_up import GAITS, ROBOT, base_of, experiment, whole, with_effect
 
 SLIDES = {"lateral_slip.mu": 0.012}
@@ -56,6 +57,62 @@ def test_wheels_that_hold_are_as_likely_as_wheels_that_cannot_slip(q):
     ]
     assert len(plain.problem.segments) > 2 * len(model.runs)
     assert fits[1].deviance == pytest.approx(fits[0].deviance, abs=5.0)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.02])
+def test_creep_is_slip_to_first_order(friction):
+    """Against wheels that creep a little, whose side speeds are states."""
+    beside, values = ("coulomb_friction",), {"coulomb_friction.force1": friction}
+    model = with_effect(values, beside)
+    segment, c = Segment(1, 0, 500, 499), 1e-3
+    creep, slip = ("lateral_creep", *beside), ("lateral_slip", *beside)
+    name = "lateral_creep.creep_compliance"
+    start = model.initial_state(segment, creep, values)
+    held = Request(segment, values | {name: 0.0}, start)
+    (linear,) = model.linearise([held], creep, (name,))
+    (off,) = model.simulate([held], creep)
+    slipping = model.converted(held, slip)
+    less, more = model.simulate(
+        [
+            Request(segment, values | {"lateral_slip.creep_compliance": some}, slipping)
+            for some in (c, 2 * c)
+        ],
+        slip,
+    )
+    change = (more.residuals - less.residuals) / c
+    own, size = start.size, float(np.linalg.norm(change))
+    assert np.sqrt(linear.gram[own, own]) == pytest.approx(size, rel=0.02)
+    # Not only as large but also in the same direction.
+    along = float(np.vdot(off.residuals, change))
+    assert linear.gram[own, -1] == pytest.approx(along, abs=0.02 * size * off.cost**0.5)
+
+
+def test_a_jump_of_the_joints_rate_moves_both_the_same_way():
+    """The impulse on the wheels counts at the mean of the rates before and after it."""
+    beside = ("servo_rate_limit", "coulomb_friction")
+    values = {"servo_rate_limit.rate_limit": 1.5, "coulomb_friction.force1": 0.02}
+    model, segment, c = with_effect(values, beside), Segment(1, 0, 500, 499), 4e-3
+
+    def change(effect: str, least: float) -> np.ndarray:
+        effects = (effect, *beside)
+        start = model.initial_state(segment, effects, values)
+        start[4:] = 0.0
+        name = f"{effect}.creep_compliance"
+        asked = [Request(segment, values | {name: least + more}, start) for more in (0.0, c)]
+        less, more = model.simulate(asked, effects)
+        return (more.residuals - less.residuals).ravel()
+
+    creeping, slipping = change("lateral_creep", 0.0), change("lateral_slip", c)
+    sizes = np.linalg.norm(creeping) * np.linalg.norm(slipping)
+    assert creeping @ slipping > 0.9 * sizes
+
+
+def test_a_score_test_sees_wheels_that_creep():
+    values = {"lateral_slip.creep_compliance": 0.004}
+    model = with_effect(values, ("lateral_slip",))
+    best = scores(base_of(model).fit, 1)[0]
+    assert best.choices == (Choice("lateral_slip"),)
+    assert best.guess == pytest.approx(values, rel=0.4)
 
 
 @pytest.fixture(scope="module")

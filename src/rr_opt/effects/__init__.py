@@ -12,7 +12,8 @@ from rr_opt.effects.effect import Effect
 _MODULES = """
 servo_lag servo_rate_limit servo_backlash servo_offset coulomb_friction stribeck_friction
 quadratic_drag rolling_force_curve left_right_drag wheel_inertia axle_misalignment floor_tilt
-floor_patch lateral_slip com_offset marker_offset clock_offset zero_offset dragged_cable
+floor_patch lateral_slip lateral_creep com_offset marker_offset clock_offset zero_offset
+dragged_cable
 """
 """What the floor does to a wheel comes before a patch of it, and that before sliding on it."""
 
@@ -20,6 +21,7 @@ _EFFECTS = [import_module(f"{__name__}.{module}").EFFECT for module in _MODULES.
 CATALOGUE: Mapping[str, Effect] = MappingProxyType({one.name: one for one in _EFFECTS})
 
 OF_ROBOTS: Mapping[str, Effect] = MappingProxyType(
-    {name: effect for name, effect in CATALOGUE.items() if name != "zero_offset"}
+    {n: effect for n, effect in CATALOGUE.items() if n not in ("zero_offset", "lateral_creep")}
 )
-"""What a robot file may list: the zeros of a capture system are stated by an experiment."""
+"""What a robot file may list: an experiment states the zeros of its capture system, and creep is
+slip."""

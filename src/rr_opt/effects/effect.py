@@ -110,7 +110,9 @@ class Effect:
     For predictions and fits:
     stiff               it lets the axles slip, which they stop doing within milliseconds
     near_discontinuous  its force all but jumps with the speed, so predictions need short steps
+    accelerated         it needs the joint's acceleration though the axles do not slip
     differentiable      the prediction is differentiable in its parameters where it vanishes
+    tangent             if not: the effect that equals it to first order in its first form
     candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,
                         what the experiment states of itself, nor a lookalike of others
     forms               which parameters are fitted together; without any, all of them
@@ -134,8 +136,10 @@ class Effect:
     observe: Callable[[Observation, Mapping[str, ca.SX]], Observation] | None = None
     delay: str | None = None
     stiff: bool = False
+    accelerated: bool = False
     near_discontinuous: bool = False
     differentiable: bool = True
+    tangent: str = ""
     candidate: bool = True
     forms: tuple[tuple[str, ...], ...] = ()
     form_error: float = 0.02

@@ -103,5 +103,6 @@ EFFECT = Effect(
         ("creep_compliance", "mu", "mu_ratio"),
     ),
     differentiable=False,
+    tangent="lateral_creep",
     form_error=0.1,
 )

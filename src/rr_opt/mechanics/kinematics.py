@@ -139,6 +139,8 @@ class Mechanism:
     constrained     the side speeds that are zero by constraint
     for_prediction  forces change sign as steeply as those of the real robot; else as smoothly as
                     an optimiser needs
+    creep           m/(N s): axles held by the constraint give way to it, by so much times the force
+                    on each of their wheels; None if they do not
     """
 
     pose: ca.SX
@@ -152,6 +154,7 @@ class Mechanism:
     forces: tuple[Force, ...] = ()
     constrained: frozenset[str] = frozenset({"s1", "s2"})
     for_prediction: bool = False
+    creep: ca.SX | None = None
 
     def rolling_speed(self, wheel: Wheel) -> ca.SX:
         """Speed of the contact point along the rolling direction, m/s."""

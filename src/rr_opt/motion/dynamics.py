@@ -105,7 +105,7 @@ def steady_effects() -> frozenset[str]:
     def steady(name: str) -> bool:
         robot = assembled((name,)).mechanism
         placed = any(ca.depends_on(force.vector, robot.pose) for force in robot.forces)
-        return len(robot.constrained) == 2 and not placed
+        return len(robot.constrained) == 2 and not placed and robot.creep is None
 
     return frozenset(name for name, effect in CATALOGUE.items() if effect.enter and steady(name))
 

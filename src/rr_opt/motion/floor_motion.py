@@ -80,34 +80,36 @@ def solved(assembly: Assembly) -> FloorMotion:
     phi, dphi, ddphi = robot.phi, robot.speeds[3], kane.udot[3]
     free = [0, *(k for k in (1, 2) if SPEEDS[k] not in robot.constrained)]
     fixed = [k for k in (1, 2) if k not in free]
-    still = ca.vertcat(robot.speeds[fixed], kane.udot[fixed])
-    needed, joint, w, sides = (
-        ca.substitute(part, still, ca.SX.zeros(2 * len(fixed)))
-        for part in (kane.needed, kane.joint, kane.rate, robot.speeds[1:3])
-    )
     u, udot = robot.speeds[free], kane.udot[free]
+    held, none = robot.speeds[fixed], ca.SX.zeros(len(fixed))
+    inverse = ca.inv_minor(ca.jacobian(kane.needed[free], udot))
+    g, moved = (-inverse @ ca.jacobian(kane.needed[free], by) for by in (ddphi, kane.udot[fixed]))
+    needed = ca.substitute(kane.needed, kane.udot[fixed], none)
     unknown = ca.vertcat(udot, ddphi)
-    inertia = ca.jacobian(needed[free], udot)
-    resting = ca.substitute(needed[free], unknown, ca.SX.zeros(unknown.numel()))
-    inverse = ca.inv_minor(inertia)
-    f = -inverse @ resting
-    g = -inverse @ ca.jacobian(needed[free], ddphi)
+    f = -inverse @ ca.substitute(needed[free], unknown, ca.SX.zeros(unknown.numel()))
 
     slips = len(free) > 1
     z = ca.vertcat(*(ca.SX.sym(f"z_{SPEEDS[k]}") for k in free))
-    speed = z if slips else z + g * dphi
+    pushed = g * dphi + moved @ held
+    speed = z if slips else z + pushed
     psi = robot.pose[2]
     cos, sin = ca.cos(psi), ca.sin(psi)
+    joint, w = kane.joint, kane.rate
     pose_rate = ca.vertcat(cos * joint[0] - sin * joint[1], sin * joint[0] + cos * joint[1], w)
-    slope = f + g * ddphi if slips else f - ca.jtimes(g, phi, dphi**2)
-    torque = ca.substitute(needed[3], udot, f + g * ddphi)
+    slope = f + g * ddphi if slips else f - ca.jtimes(pushed, phi, dphi)
+    loads = ca.substitute(needed, udot, f + g * ddphi)
+    sides = none
+    if robot.creep is not None:
+        holding = ca.substitute(loads[fixed], ca.vertcat(u, held), ca.vertcat(z + g * dphi, none))
+        sides = -robot.creep / 2 * holding
     rates, shown, torque = (
-        ca.cse(ca.substitute(part, u, speed))
-        for part in (ca.vertcat(pose_rate, slope), ca.vertcat(robot.speeds[0], sides, w), torque)
+        ca.cse(ca.substitute(ca.substitute(part, u, speed), held, sides))
+        for part in (ca.vertcat(pose_rate, slope), ca.vertcat(robot.speeds[:3], w), loads[3])
     )
     seen = assembly.observation
     state, p = ca.vertcat(robot.pose, z), assembly.p
-    drive = ca.vertcat(phi, dphi, ddphi) if slips else ca.vertcat(phi, dphi)
+    accelerated = slips or robot.creep is not None
+    drive = ca.vertcat(phi, dphi, ddphi) if accelerated else ca.vertcat(phi, dphi)
     given = ca.SX.sym("ddphi")
     torque = ca.substitute(torque, ddphi, given)
     inputs = {"state": state, "drive": drive, "p": p}

@@ -66,6 +66,7 @@ class EffectInfo:
     channel     where it would show
     smooth      the prediction is differentiable in its quantities where it vanishes, so that a
                 score test can detect it
+    tangent     if not: the effect that equals it to first order in its first form, or none
     upstream    it changes the machine's drive, which is recorded separately
     form_error  relative deviation of machines from this model of the effect
     named       a diagnosis may name it; if not, it is only a lookalike of others
@@ -78,6 +79,7 @@ class EffectInfo:
     channel: str
     forms: tuple[Form, ...]
     smooth: bool = True
+    tangent: str = ""
     upstream: bool = False
     form_error: float = 0.02
     named: bool = True

@@ -27,29 +27,31 @@ class Score:
 
 
 def with_all(fit: Fit) -> tuple[str, ...]:
-    """The fit's effects, and all smooth ones that it lacks."""
-    return tuple(sorted((*fit.effects, *_lacking(fit))))
+    """The fit's effects, and all that it lacks to first order."""
+    return tuple(sorted((*fit.effects, *_lacking(fit).values())))
 
 
-def _lacking(fit: Fit) -> list[str]:
-    """The smooth effects that a fit lacks and a diagnosis may name."""
+def _lacking(fit: Fit) -> dict[str, str]:
+    """The effects that a fit lacks and a diagnosis may name, each with the one that equals it to
+    first order: if it is smooth, itself."""
     every = fit.problem.model.catalogue.items()
-    return [n for n, info in every if info.smooth and info.named and n not in fit.effects]
+    named = {n: info for n, info in every if info.named and n not in fit.effects}
+    return {n: info.tangent or n for n, info in named.items() if info.smooth or info.tangent}
 
 
 def scores(fit: Fit, most: int) -> list[Score]:
-    """Scores of all smooth effects that the fit lacks, and of all pairs of them; best first."""
+    """Scores of all effects that the fit lacks and that have a first order, and of all pairs of
+    them; best first."""
     model, problem = fit.problem.model, fit.problem
-    choices = [
-        Choice(name, form)
-        for name in _lacking(fit)
-        for form in range(len(model.catalogue[name].forms))
-    ]
-    if not choices:
-        return []
-    added = {
-        q.name: q for one in choices for q in model.catalogue[one.name].forms[one.form].quantities
+    # Each effect's quantities, under its name.
+    own = {
+        Choice(name, k): {q.name.replace(tangent, name, 1): q for q in form.quantities}
+        for name, tangent in _lacking(fit).items()
+        for k, form in enumerate(model.catalogue[tangent].forms)
     }
+    if not own:
+        return []
+    added = {q.name: q for some in own.values() for q in some.values()}
     quantities = (*problem.quantities, *added.values())
     effects = with_all(fit)
     values = {**fit.values, **{q.name: q.neutral for q in added.values()}}
@@ -66,20 +68,13 @@ def scores(fit: Fit, most: int) -> list[Score]:
     test = _Test(H, g, u, wide.box, len(problem.quantities), wide.prior)
     where = {q.name: k for k, q in enumerate(quantities)}
     base, out = test.gain([]), []
-    for some in (1, 2)[:most]:
-        for these in itertools.combinations(choices, some):
-            if len({one.name for one in these}) < some:
+    for size in (1, 2)[:most]:
+        for these in itertools.combinations(own, size):
+            if len({one.name for one in these}) < size:
                 continue
-            own = [
-                where[q.name]
-                for one in these
-                for q in model.catalogue[one.name].forms[one.form].quantities
-            ]
-            gain, d = test.gain(own)
-            guess = {
-                quantities[k].name: values[quantities[k].name] + d[k] * quantities[k].scale
-                for k in own
-            }
+            some = {name: q for one in these for name, q in own[one].items()}
+            gain, d = test.gain([where[q.name] for q in some.values()])
+            guess = {name: q.neutral + d[where[q.name]] * q.scale for name, q in some.items()}
             out.append(Score(tuple(sorted(these)), gain - base[0], guess))
     return sorted(out, key=lambda score: -score.gain)
 

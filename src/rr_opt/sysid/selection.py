@@ -43,6 +43,7 @@ class Selection:
     lookalikes: Sequence[Candidate] = ()
     _earlier: Mapping[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
+    _scores_of: dict[Candidate, list[Score]] = field(default_factory=dict)
     _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
     _plausibles: dict[Candidate, bool] = field(default_factory=dict)
     _contested: Candidate | None = None
@@ -192,8 +193,6 @@ class Selection:
         promising = self._promising()
         found = [*self._scored(promising, 1)]
         alone = _best(found)
-        if self._settled(found):
-            found += self._unscored(self.best)
         if not self._settled(found):
             found += self._extended()
         if not self._settled(found):
@@ -204,10 +203,9 @@ class Selection:
         stuck = not (self.best.choices or self._advance(_best(found)))
         if stuck and alone and alone.predicts_better(self.best):
             found += self._proposed(alone)
-        best = _best(found)
-        if best and len(best.choices) > len(self.best.choices) + 1:
-            found += [one for part in self._fewer(best) for one in self._unscored(part)]
-        self.best = _best(one for one in found if self._advance(one)) or self.best
+        # The best first: it takes a fit over whole runs to tell.
+        ranked = sorted(found, key=lambda one: -one.elpd)
+        self.best = next((one for one in ranked if self._advance(one)), self.best)
 
     def _advance(self, found: Candidate | None) -> bool:
         """Whether a candidate is a step forward."""
@@ -223,8 +221,19 @@ class Selection:
         return all(best.predicts_better(one) for one in (self.best, *others))
 
     def _promising(self) -> list[Score]:
-        room = SETTINGS.most_effects - len(self.best.choices)
-        return [one for one in scores(self.best.fit, min(room, 2)) if one.gain > 0]
+        return [one for one in self._scores(self.best) if one.gain > 0]
+
+    def _scores(self, candidate: Candidate) -> list[Score]:
+        """Of one and of two effects beside a candidate's, best first."""
+        if candidate not in self._scores_of:
+            room = SETTINGS.most_effects - len(candidate.choices)
+            self._scores_of[candidate] = scores(candidate.fit, min(room, 2))
+        return self._scores_of[candidate]
+
+    def _unpromising(self, candidate: Candidate) -> list[str]:
+        """The effects whose scores beside a candidate come after the most promising ones."""
+        single = (one.choices for one in self._scores(candidate) if len(one.choices) == 1)
+        return [*dict.fromkeys(choice.name for (choice,) in single)][SETTINGS.promising :]
 
     def _scored(self, promising: Sequence[Score], size: int) -> Iterator[Candidate]:
         """The most promising sets of so many further effects."""
@@ -242,18 +251,6 @@ class Selection:
         self.model.prepare((*parent.effects, *(c.name for c in more)) for more, _ in every)
         for more, guesses in every:
             yield self.fitted((*parent.choices, *more), guesses, parent)
-
-    def _unscored(self, beside: Candidate) -> Iterator[Candidate]:
-        """Effects that a score test cannot detect, from their usual size, lest an imitation win."""
-        usual = {
-            name: {q.name: q.scale for q in info.forms[0].quantities}
-            for name, info in self.model.catalogue.items()
-            if not (info.smooth or info.upstream or name in beside.effects)
-            and info.named
-            and info.forms[0].guesses
-        }
-        asked = (((Choice(name),), [guess]) for name, guess in usual.items())
-        yield from self._added(asked, beside)
 
     def _extended(self) -> Iterator[Candidate]:
         """Each effect in a fuller form."""
@@ -277,7 +274,8 @@ class Selection:
         if len(parent.choices) >= SETTINGS.most_effects:
             return
         guesses: dict[Choice, list[Mapping[str, float]]] = {}
-        for choice, guess in self.model.proposals(parent.fit, parent.effects):
+        others = (*parent.effects, *self._unpromising(parent))
+        for choice, guess in self.model.proposals(parent.fit, others):
             guesses.setdefault(choice, []).append(guess)
         yield from self._added((((one,), some) for one, some in guesses.items()), parent)
 
@@ -319,7 +317,7 @@ class Selection:
         catalogue, best = self.model.catalogue, self.best
         for choice in best.choices:
             others = [one for one in best.choices if one is not choice]
-            sets = [others, *([x for x in others if x is not one] for one in others)]
+            fewer = [[x for x in others if x is not one] for one in others]
             for name in catalogue[choice.name].lookalikes:
                 self.progress(f"comparing {words_of(choice.name)} with {words_of(name)}")
                 # The effect's values under its name: a fit takes those that it has.
@@ -330,10 +328,15 @@ class Selection:
                 }
                 for form, info in enumerate(catalogue[name].forms):
                     guesses = [{**guess, **same} for guess in info.guesses]
-                    for rest in sets:
-                        if name not in (one.name for one in rest):
-                            choices = (*rest, Choice(name, form))
-                            yield fitted(self.model, choices, best.fit, guesses, best.fit)
+                    for rest in (others, *fewer):
+                        if name in (one.name for one in rest):
+                            continue
+                        choices = (*rest, Choice(name, form))
+                        made = fitted(self.model, choices, best.fit, guesses, best.fit)
+                        yield made
+                        # Fewer effects fit no better.
+                        if rest is others and made.given_up:
+                            break
 
     @property
     def weighted(self) -> list[tuple[Candidate, float]]:

@@ -36,22 +36,30 @@ _KEPT, _SEEN, _WORTH = 1024, 12, 200
 @dataclass(frozen=True)
 class Steps:
     """The steps of a prediction, `each` of them between two samples, with their `edges`, s, on the
-    recording's clock; `stiff` if some states are stiff."""
+    recording's clock; `stiff` if some states are stiff, `accelerated` if the drive has ddphi."""
 
     edges: Array
     each: int
     stiff: bool
+    accelerated: bool
 
 
 class Grain(TypedDict):
     """How a prediction is stepped."""
 
     stiff: bool
+    accelerated: bool
     longest: float
 
 
 def steps_of(
-    drive: Drive, t: Array, late: float, *, stiff: bool = False, longest: float = _LONGEST
+    drive: Drive,
+    t: Array,
+    late: float,
+    *,
+    stiff: bool = False,
+    accelerated: bool = False,
+    longest: float = _LONGEST,
 ) -> Steps:
     """Steps between the samples t; where dphi jumps, one ends and the next begins.
 
@@ -80,7 +88,7 @@ def steps_of(
             at[this] = np.maximum(at[this], at[before] + 1)
         at[this] = np.clip(at[this], n + 1, each - 1 - to_come[this])
     edges[k, at] = jumps
-    return Steps(np.append(edges.ravel(), t[-1]), each, stiff)
+    return Steps(np.append(edges.ravel(), t[-1]), each, stiff, accelerated)
 
 
 def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -> DrivePath:
@@ -109,6 +117,13 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
         # amounts to the change of phi.
         begin, end = at_edges[0, k : k + 2]
         nodes[0, 1, k], nodes[1, :, k] = (begin + end) / 2, (end - begin) / h[k]
+    if steps.accelerated:
+        # Its mean over each step: of a jump of dphi, the steps to either side have half.
+        begins, ends = nodes[1, 0], nodes[1, 2]
+        rate = np.concatenate([begins[:1], (ends[:-1] + begins[1:]) / 2, ends[-1:]])
+        mean_bend = np.diff(rate) / h
+        nodes = np.concatenate([nodes, np.broadcast_to(mean_bend, (1, 3, h.size))])
+        at_edges = np.vstack([at_edges, np.append(mean_bend, mean_bend[-1])])
     return DrivePath(h, nodes, at_edges[:, :: steps.each], steps.each)
 
 
@@ -264,7 +279,7 @@ def joint_of(given: Mapping[str, float]) -> FreeJoint:
 
 
 def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
-    """Whether some states are stiff, and the longest step, s."""
+    """Whether some states are stiff, whether they need ddphi, and the longest step, s."""
     every = [CATALOGUE[name] for name in effects]
     sharp = ((one, q) for one in every for q in one.parameters if q.sharp)
     stiff, longest = any(one.stiff for one in every), _LONGEST
@@ -274,7 +289,8 @@ def grain(given: Mapping[str, float], effects: Sequence[str]) -> Grain:
         longest = _STIFF
     elif any(one.near_discontinuous for one in every):
         longest = _SHARP
-    return {"stiff": stiff, "longest": longest}
+    accelerated = any(one.accelerated for one in every)
+    return {"stiff": stiff, "accelerated": accelerated, "longest": longest}
 
 
 def jumping(effects: Iterable[str]) -> bool:

@@ -111,11 +111,12 @@ class RacerModel:
 
     @cached_property
     def _catalogue(self) -> Mapping[str, EffectInfo]:
-        lookalikes = {name for effect in CATALOGUE.values() for name in effect.lookalikes}
+        effects = CATALOGUE.values()
+        beside = {name for effect in effects for name in (*effect.lookalikes, effect.tangent)}
         return {
             name: effect_info(effect, self.setting)
             for name, effect in CATALOGUE.items()
-            if name not in self.simulator.built_in and (effect.candidate or name in lookalikes)
+            if name not in self.simulator.built_in and (effect.candidate or name in beside)
         }
 
     @property

@@ -20,7 +20,7 @@ from rr_opt.model.experiment import CHANNELS, Recording, Run, Start
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.diagnosis import NextExperiment
 from rr_opt.sysid.estimation import Fit, FitProblem, Linear, bounded_minimum
-from rr_opt.sysid.model import Request, Segment, Simulation
+from rr_opt.sysid.model import Request, Segment
 
 _AMPLITUDES = (0.25, 0.45, 0.7, 1.0, 1.3)
 _PERIODS = (0.6, 0.9, 1.3, 1.9, 2.8)
@@ -42,8 +42,6 @@ _THEN = "Add it to experiment.yaml and diagnose again."
 
 _AT_ONCE = 8
 """Plans that are simulated together."""
-_STATE_STEPS = 3
-"""Gauss-Newton steps for the initial states, as a poor guess of them counts as a difference."""
 
 
 def next_experiment(
@@ -58,11 +56,10 @@ def next_experiment(
         return None
     # A few at a time: all steps of all plans would be large.
     batches = [plans[k : k + _AT_ONCE] for k in range(0, len(plans), _AT_ONCE)]
+    planned = [_planned(racer, best, some) for some in batches]
     if rival is not None:
         name, fit = rival
-        apart = np.concatenate(
-            [_separations(_planned(racer, best, some)[0], fit) for some in batches]
-        )
+        apart = np.concatenate([_separations(*some, fit) for some in planned])
         k = int(np.argmax(apart))
         if apart[k] > _TOLD_APART:
             sentence = (
@@ -71,7 +68,7 @@ def next_experiment(
                 f"refitting. {_THEN}"
             )
             return _answer(plans[k], (_names(best), name), float(apart[k]), sentence)
-    known = _narrowed(best, (_planned(racer, best, some) for some in batches))
+    known = _narrowed(best, planned)
     if known is None:
         return None
     k, quantity, factor, apart = known
@@ -187,37 +184,22 @@ def _begun(
 
 
 def _linearised(
-    planned: RacerModel, fit: Fit, begun: Mapping[Segment, Array] | None = None
+    planned: RacerModel, begun: Mapping[Segment, Array], fit: Fit
 ) -> tuple[FitProblem, Mapping[int, tuple[Array, float, Array]]]:
-    """H, g and value of every plan for the fit's quantities, its initial state eliminated.
-
-    begun  the initial states, if the plans are the fit's own predictions
-    """
-    cut = _whole([run.t for run in planned.runs])
-    problem = replace(fit.problem, model=planned, segments=tuple(cut), robust=False)
-    values = dict(fit.values)
-    states = begun or {one: planned.initial_state(one, problem.effects, values) for one in cut}
-
-    def made_from(begun: Mapping[Segment, Array]) -> Mapping[Segment, Simulation]:
-        requests = problem.requests(values, begun)
-        return dict(zip(cut, planned.simulate(requests, problem.effects), strict=True))
-
-    # For the fit's own predictions the states are known, and undivided runs need no simulation.
-    made = {} if begun else made_from(states)
-    for _ in range(0 if begun else _STATE_STEPS):
-        linear = Linear.of(problem, values, states, made)
-        moved = linear.moved(linear.evidences(problem.q), np.zeros(len(problem.names)))
-        after = made_from(moved)
-        closer = {one: after[one].cost < made[one].cost for one in cut}
-        states = {one: moved[one] if closer[one] else states[one] for one in cut}
-        made = {one: after[one] if closer[one] else made[one] for one in cut}
-    evidences = Linear.of(problem, values, states, made).evidences(problem.q)
+    """H, g and value of every plan for the fit's quantities, its initial state eliminated."""
+    problem = replace(fit.problem, model=planned, segments=tuple(begun), robust=False)
+    # Undivided runs need no simulation.
+    evidences = Linear.of(problem, dict(fit.values), begun, {}).evidences(problem.q)
     return problem, {run: (e.H, e.excess + e.samples, e.g) for run, e in evidences.items()}
 
 
-def _separations(planned: RacerModel, rival: Fit) -> Array:
+def _separations(planned: RacerModel, begun: Mapping[Segment, Array], rival: Fit) -> Array:
     """RMS misfit of the rival on each plan's recording after refitting, in sigma, linearised."""
-    problem, plans = _linearised(planned, rival)
+    states = {
+        one: planned.converted(Request(one, rival.values, state), rival.effects)
+        for one, state in begun.items()
+    }
+    problem, plans = _linearised(planned, states, rival)
     H0, _, _ = rival.information()
     low, high = problem.box
     out = []
@@ -241,7 +223,7 @@ def _narrowed(
     added: dict[int, Array] = {}
     sizes: list[int] = []
     for some, begun in planned:
-        _, plans = _linearised(some, best, begun)
+        _, plans = _linearised(some, begun, best)
         known = ((run, H) for run, (H, value, _) in plans.items() if np.isfinite(value))
         added |= {len(sizes) + run: H for run, H in known}
         sizes += [run.values.size for run in some.runs]

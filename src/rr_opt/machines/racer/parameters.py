@@ -66,6 +66,7 @@ def effect_info(effect: Effect, setting: OperatingRange) -> EffectInfo:
         _CHANNELS[effect.family],
         tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
         smooth=effect.differentiable,
+        tangent=effect.tangent,
         upstream=effect.port == Port.ACTUATION or effect.delay is not None,
         form_error=effect.form_error,
         named=effect.candidate,
