@@ -148,7 +148,7 @@ def test_a_step_that_leaves_about_as_much_is_not_taken(whole, segments, taken):
     assert bool(selection.best.choices) == taken
 
 
-def test_effects_are_proposed_unless_others_score_better():
+def test_effects_are_proposed_unless_others_score_better(monkeypatch):
     def score(*names: str) -> Any:
         return SimpleNamespace(choices=tuple(Choice(name) for name in names))
 
@@ -161,6 +161,9 @@ def test_effects_are_proposed_unless_others_score_better():
         def _added(self, asked, beside=None) -> Any:
             return [choices for choices, _ in asked]
 
+    # Tilt alone gains nothing, and a patch has no score.
+    known = dict.fromkeys(["slip", "effect0", "tilt"], "")
+    monkeypatch.setattr("rr_opt.sysid.selection.lacking", lambda _: known)
     selection, asked = Scored(0.0), []
 
     def proposals(fit, complete) -> Any:
@@ -170,4 +173,4 @@ def test_effects_are_proposed_unless_others_score_better():
     selection.best = SimpleNamespace(choices=(Choice("drag"),), effects=("drag",), fit=None)  # pyright: ignore
     selection.model = SimpleNamespace(proposals=proposals)  # pyright: ignore
     assert [*selection._proposed(selection.best)] == [(Choice("patch"),)]
-    assert asked == ["drag", "slip"]
+    assert asked == ["drag", "slip", "tilt"]

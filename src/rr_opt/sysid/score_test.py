@@ -28,10 +28,10 @@ class Score:
 
 def with_all(fit: Fit) -> tuple[str, ...]:
     """The fit's effects, and all that it lacks to first order."""
-    return tuple(sorted((*fit.effects, *_lacking(fit).values())))
+    return tuple(sorted((*fit.effects, *lacking(fit).values())))
 
 
-def _lacking(fit: Fit) -> dict[str, str]:
+def lacking(fit: Fit) -> dict[str, str]:
     """The effects that a fit lacks and a diagnosis may name, each with the one that equals it to
     first order: if it is smooth, itself."""
     every = fit.problem.model.catalogue.items()
@@ -41,12 +41,12 @@ def _lacking(fit: Fit) -> dict[str, str]:
 
 def scores(fit: Fit, most: int) -> list[Score]:
     """Scores of all effects that the fit lacks and that have a first order, and of all pairs of
-    them; best first."""
+    them; best first. Without those that gain nothing: at a bound, a step leaves them out."""
     model, problem = fit.problem.model, fit.problem
     # Each effect's quantities, under its name.
     own = {
         Choice(name, k): {q.name.replace(tangent, name, 1): q for q in form.quantities}
-        for name, tangent in _lacking(fit).items()
+        for name, tangent in lacking(fit).items()
         for k, form in enumerate(model.catalogue[tangent].forms)
     }
     if not own:
@@ -74,8 +74,9 @@ def scores(fit: Fit, most: int) -> list[Score]:
                 continue
             some = {name: q for one in these for name, q in own[one].items()}
             gain, d = test.gain([where[q.name] for q in some.values()])
-            guess = {name: q.neutral + d[where[q.name]] * q.scale for name, q in some.items()}
-            out.append(Score(tuple(sorted(these)), gain - base[0], guess))
+            if all(any(d[where[q.name]] for q in own[one].values()) for one in these):
+                guess = {name: q.neutral + d[where[q.name]] * q.scale for name, q in some.items()}
+                out.append(Score(tuple(sorted(these)), gain - base[0], guess))
     return sorted(out, key=lambda score: -score.gain)
 
 

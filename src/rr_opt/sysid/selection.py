@@ -20,7 +20,7 @@ from rr_opt.sysid.candidates import Candidate, continued, first, fitted, quantit
 from rr_opt.sysid.estimation import predicted, solve
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
-from rr_opt.sysid.score_test import Score, scores, with_all
+from rr_opt.sysid.score_test import Score, lacking, scores, with_all
 from rr_opt.sysid.settings import SETTINGS
 
 Progress = Callable[[str], None]
@@ -231,9 +231,10 @@ class Selection:
         return self._scores_of[candidate]
 
     def _unpromising(self, candidate: Candidate) -> list[str]:
-        """The effects whose scores beside a candidate come after the most promising ones."""
+        """The effects whose scores beside a candidate are not among the most promising ones."""
         single = (one.choices for one in self._scores(candidate) if len(one.choices) == 1)
-        return [*dict.fromkeys(choice.name for (choice,) in single)][SETTINGS.promising :]
+        ranked = [*dict.fromkeys(choice.name for (choice,) in single)]
+        return [name for name in lacking(candidate.fit) if name not in ranked[: SETTINGS.promising]]
 
     def _scored(self, promising: Sequence[Score], size: int) -> Iterator[Candidate]:
         """The most promising sets of so many further effects."""

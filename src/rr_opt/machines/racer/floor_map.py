@@ -141,7 +141,7 @@ def _roots(squares: Array) -> Array:
     """(segments, r, k): roots' roots are the squares (segments, k, k), but for rounding. r is less
     than k, since wheels that are braked in the same moment do much the same."""
     value, vector = np.linalg.eigh(squares)
-    some = (value > 1e-13 * value.max()).any(axis=0)
+    some = (value > 1e-9 * value.max()).any(axis=0)
     roots = np.sqrt(np.maximum(value, 0.0))[:, None] * vector
     return np.ascontiguousarray(roots[:, :, some].swapaxes(1, 2))
 

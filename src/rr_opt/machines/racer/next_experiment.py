@@ -16,6 +16,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.formatting import words_of
 from rr_opt.machines.racer.model import RacerModel
+from rr_opt.messages import listed
 from rr_opt.model.experiment import CHANNELS, Recording, Run, Start
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.diagnosis import NextExperiment
@@ -63,9 +64,9 @@ def next_experiment(
         k = int(np.argmax(apart))
         if apart[k] > _TOLD_APART:
             sentence = (
-                f"{plans[k].asked} If the cause is {words_of(_names(best))}, a model with "
-                f"{words_of(name)} would miss this recording by {apart[k]:.1f} sigma even after "
-                f"refitting. {_THEN}"
+                f"{plans[k].asked} If the cause is {_words(best) or _NOMINAL}, a model with "
+                f"{_words(fit) or name} would miss this recording by {apart[k]:.1f} sigma even "
+                f"after refitting. {_THEN}"
             )
             return _answer(plans[k], (_names(best), name), float(apart[k]), sentence)
     known = _narrowed(best, planned)
@@ -108,8 +109,15 @@ def _answer(
     )
 
 
+_NOMINAL = "the nominal model"
+
+
 def _names(fit: Fit) -> str:
-    return " and ".join(fit.effects) or "the nominal model"
+    return " and ".join(fit.effects) or _NOMINAL
+
+
+def _words(fit: Fit) -> str:
+    return listed(map(words_of, fit.effects))
 
 
 def _plans(racer: RacerModel) -> list[_Plan]:
