@@ -1,10 +1,14 @@
 """The joint's recorded angle tells which effect of the drive made it, in its fullest form too."""
 
+from dataclasses import replace
+
 import pytest
 
 from rr_opt.machines.racer import actuation
 from rr_opt.machines.racer.actuation import actuation_sets
+from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import EffectUse
 from tests.sysid.made_up import with_effect
 
 SECOND_ORDER = {"servo_lag.tau": 0.009, "servo_lag.beta": 2.5e-5}
@@ -48,3 +52,12 @@ def test_no_pairs_are_tried_where_no_single_effect_explains_anything(monkeypatch
     model = with_effect({}, ())
     assert actuation_sets(model, range(len(model.runs))) == [((), {})]
     assert max(sizes) == 1
+
+
+def test_a_robot_that_has_every_effect_of_servo_and_clock():
+    model = with_effect({"servo_offset.offset": 0.1}, ("servo_offset",))
+    every = [name for name, info in model.catalogue.items() if info.upstream]
+    uses = (EffectUse(name, {}) for name in every)
+    robot = replace(model.experiment.robot, physics=tuple(uses))
+    listed = RollerRacer(replace(model.experiment, robot=robot))
+    assert actuation_sets(listed, range(len(listed.runs))) == [((), {})]

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.machines.racer.model import _travelled
 from rr_opt.machines.racer.observed import observed
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.sysid.model import Data, Request, Segment, segments
@@ -68,3 +69,22 @@ def test_a_part_without_data_begins_at_the_nearest(lost):
     (seen,) = observed(model, [Request(part, {}, start)], ())
     assert np.isfinite([seen.x, seen.y, seen.psi]).all()
     assert np.isfinite(seen.u).all()
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_the_usual_speed_where_every_other_place_is_missing(first):
+    model = with_effect({}, ())
+    run, *others = model.experiment.runs
+    values = {name: column.copy() for name, column in run.recording.values.items()}
+    for name in ("x", "y", "psi"):
+        values[name][first::2] = np.nan
+    recording = replace(run.recording, values=values)
+    sparse = replace(model.experiment, runs=(replace(run, recording=recording), *others))
+    assert RollerRacer(sparse).setting.speed == pytest.approx(model.setting.speed, rel=0.2)
+
+
+def test_a_run_is_travelled_to_its_end():
+    model = with_effect({}, (), seconds=0.9)
+    way = _travelled(model.runs[1])
+    whole = np.hypot(*(model.runs[1].values[-1, :2] - model.runs[1].values[0, :2]))
+    assert way[-1] > 0.9 * whole

@@ -101,3 +101,11 @@ def test_fewer_effects_are_not_tried_where_more_do_not_fit(monkeypatch, given_up
     made = lambda _, choices, *__: SimpleNamespace(choices=choices, given_up=given_up)  # noqa: E731
     monkeypatch.setattr(selection, "fitted", made)
     assert [len(one.choices) for one in Selection._lookalikes(search)] == sizes
+
+
+def test_a_lookalike_that_the_robot_has_is_not_tried():
+    one = SimpleNamespace(choices=(Choice("friction"),), fit=SimpleNamespace(values={}))
+    search: Any = Contest(answer=one)
+    known = {"friction": SimpleNamespace(lookalikes=("cable",))}
+    search.model, search.progress = SimpleNamespace(catalogue=known), lambda _: None
+    assert [*Selection._lookalikes(search)] == []

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.machines.racer import next_experiment as module
 from rr_opt.machines.racer.next_experiment import _plans, next_experiment
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.sysid.candidates import fitted
 from rr_opt.sysid.model import Choice
-from tests.sysid.made_up import ROBOT, base_of, with_effect
+from tests.sysid.made_up import GAITS, ROBOT, base_of, with_effect
 
 FRICTION = {"coulomb_friction.force1": 0.003, "coulomb_friction.force2": 0.003}
 DRAG = {"quadratic_drag.coefficient_total": 0.2}
@@ -71,3 +72,19 @@ def test_no_gait_that_the_servo_can_do_is_no_plan(case):
     still = RollerRacer(replace(model.experiment, robot=slow))
     assert next_experiment(still, fits[0], ("quadratic_drag", fits[1])) is None
     assert next_experiment(still, fits[0], None) is None
+
+
+def test_the_rivals_initial_states_suit_it(monkeypatch):
+    tilt = {"floor_tilt.tilt_x": 0.004, "floor_tilt.tilt_y": 0.004}
+    model = with_effect(tilt, ("floor_tilt",), gaits=GAITS[:2])
+    base = base_of(model).fit
+    best = fitted(model, [Choice("floor_tilt")], base, [tilt]).fit
+
+    def separation(steps: int) -> float:
+        monkeypatch.setattr(module, "_STATE_STEPS", steps)
+        told = next_experiment(model, best, ("other parameters", base))
+        assert told is not None
+        return told.separation
+
+    assert separation(3) == pytest.approx(separation(20), rel=0.02)
+    assert separation(0) > 1.2 * separation(20)

@@ -9,7 +9,6 @@ import pytest
 from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
-from rr_opt.sysid.settings import SETTINGS
 
 
 @dataclass(frozen=True)
@@ -146,31 +145,3 @@ def test_a_step_that_leaves_about_as_much_is_not_taken(whole, segments, taken):
     selection = Bending(elpd=0.0)
     selection._forward()
     assert bool(selection.best.choices) == taken
-
-
-def test_effects_are_proposed_unless_others_score_better(monkeypatch):
-    def score(*names: str) -> Any:
-        return SimpleNamespace(choices=tuple(Choice(name) for name in names))
-
-    class Scored(Settling):
-        def _scores(self, candidate) -> Any:
-            assert candidate is self.best
-            every = [score(f"effect{k}") for k in range(SETTINGS.promising)]
-            return [every[0], score("slip", "tilt"), *every, score("slip")]
-
-        def _added(self, asked, beside=None) -> Any:
-            return [choices for choices, _ in asked]
-
-    # Tilt alone gains nothing, and a patch has no score.
-    known = dict.fromkeys(["slip", "effect0", "tilt"], "")
-    monkeypatch.setattr("rr_opt.sysid.selection.lacking", lambda _: known)
-    selection, asked = Scored(0.0), []
-
-    def proposals(fit, complete) -> Any:
-        asked.extend(complete)
-        return [(Choice("patch"), {})]
-
-    selection.best = SimpleNamespace(choices=(Choice("drag"),), effects=("drag",), fit=None)  # pyright: ignore
-    selection.model = SimpleNamespace(proposals=proposals)  # pyright: ignore
-    assert [*selection._proposed(selection.best)] == [(Choice("patch"),)]
-    assert asked == ["drag", "slip", "tilt"]

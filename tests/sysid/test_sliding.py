@@ -10,6 +10,7 @@ from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.machines.racer.simulation import side_speeds
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.candidates import fitted
+from rr_opt.sysid.diagnose import diagnose
 from rr_opt.sysid.estimation import solve
 from rr_opt.sysid.model import Choice, Request, Segment
 from rr_opt.sysid.score_test import scores
@@ -160,6 +161,39 @@ def test_one_of_the_grips_to_begin_with_is_near_the_true_one(sliding):
     assert nearest < np.log(1.3)
     for form, guess in guesses:
         assert set(guess) == {q.name for q in forms[form].quantities}
+
+
+FAST = (
+    (SineGait(1.0, 1.0), "rest"),
+    (SineGait(0.8, 1.0, 0.2), "running"),
+    (SineGait(1.0, 1.2, -0.25), "running"),
+    (SineGait(1.2, 1.4), "rest"),
+)
+
+
+def test_wheels_that_slide_far_are_found_though_hardly_any_creep_scores():
+    grip = {"lateral_slip.creep_compliance": 3e-4, "lateral_slip.mu": 0.012}
+    found = diagnose(with_effect(grip, ("lateral_slip",), gaits=FAST, seconds=6.0))
+    assert [one.name for one in found.findings] == ["lateral_slip"]
+    assert found.findings[0].parameters["mu"].value == pytest.approx(0.012, rel=0.02)
+
+
+def test_sliding_is_not_proposed_where_it_would_explain_nothing():
+    model = with_effect({"coulomb_friction.force1": 0.02}, ("coulomb_friction",))
+    assert slips(model, base_of(model).fit) == []
+
+
+@pytest.mark.parametrize("ratio", [0.0, 1.0])
+def test_the_friction_circle_is_proposed_for_wheels_that_have_one(ratio):
+    """Wheels that hardly resist show none."""
+    parts = {"lateral_slip.creep_compliance": 6e-4, "lateral_slip.mu": 0.02}
+    parts |= {"coulomb_friction.force1": 0.02, "coulomb_friction.force2": 0.02}
+    effects, form = ("coulomb_friction", "lateral_slip"), Choice("lateral_slip", 1)
+    values = {**parts, "lateral_slip.mu_ratio": ratio}
+    model = with_effect(values, effects, gaits=FAST, seconds=6.0)
+    fit = fitted(model, [Choice("coulomb_friction"), form], base_of(model).fit, [parts]).fit
+    proposed = [(2, {"lateral_slip.mu_ratio": 1.0})] if ratio else []
+    assert slips(model, fit) == proposed
 
 
 def test_wheels_that_hardly_hold_are_found():

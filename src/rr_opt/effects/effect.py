@@ -51,7 +51,7 @@ class Parameter:
     initial_guesses   where a fit starts: distances from neutral in units of the usual magnitude,
                       or multiples of that magnitude if neutral is not zero. Several where a fit
                       from the first may end in a local minimum or on a plateau
-    guess_from_data   a place on the floor: only the recordings say where a fit should start
+    guess_from_data   only the recordings say where a fit should start: a place on the floor, a grip
     model_form_sigma  relative spread of its value between real machines, 1 sigma
     fit_lower         a fit goes no lower: there the effect turns into another
     fit_upper         a fit goes no higher, for a given operating range

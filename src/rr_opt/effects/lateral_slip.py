@@ -86,7 +86,7 @@ EFFECT = Effect(
         Parameter(
             *("mu", "dimensionless", (0.001, 10.0), 0.1),
             neutral=10.0,
-            initial_guesses=tuple(15.0 * 0.73**k for k in range(22)),
+            guess_from_data=True,
             model_form_sigma=0.03,
             sharp=True,
         ),

@@ -5,6 +5,8 @@ With the information matrix it gives the likelihood gain of a Newton step, every
 (Rao 1948), and an initial guess. Only the few most promising effects are fitted.
 """
 
+from __future__ import annotations
+
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum, root, summed
-from rr_opt.sysid.model import Choice, Request
+from rr_opt.sysid.estimation import Fit, FitProblem, Linear, States, bounded_minimum, root, summed
+from rr_opt.sysid.model import Choice, Linearisation, Quantity, Request, Segment, Simulation
 
 
 @dataclass(frozen=True)
@@ -28,10 +30,10 @@ class Score:
 
 def with_all(fit: Fit) -> tuple[str, ...]:
     """The fit's effects, and all that it lacks to first order."""
-    return tuple(sorted((*fit.effects, *lacking(fit).values())))
+    return tuple(sorted((*fit.effects, *_lacking(fit).values())))
 
 
-def lacking(fit: Fit) -> dict[str, str]:
+def _lacking(fit: Fit) -> dict[str, str]:
     """The effects that a fit lacks and a diagnosis may name, each with the one that equals it to
     first order: if it is smooth, itself."""
     every = fit.problem.model.catalogue.items()
@@ -46,7 +48,7 @@ def scores(fit: Fit, most: int) -> list[Score]:
     # Each effect's quantities, under its name.
     own = {
         Choice(name, k): {q.name.replace(tangent, name, 1): q for q in form.quantities}
-        for name, tangent in lacking(fit).items()
+        for name, tangent in _lacking(fit).items()
         for k, form in enumerate(model.catalogue[tangent].forms)
     }
     if not own:
@@ -62,12 +64,9 @@ def scores(fit: Fit, most: int) -> list[Score]:
     wide = replace(problem, effects=effects, quantities=quantities)
     requests = wide.requests(values, states)
     made = dict(zip(wide.segments, model.simulate(requests, effects), strict=True))
-    evidences = Linear.of(wide, values, states, made).evidences(problem.q)
-    u = wide.scaled(values)
-    H, g, _ = summed(wide, evidences, u)
-    test = _Test(H, g, u, wide.box, len(problem.quantities), wide.prior)
+    test = _Test.of(Linear.of(wide, values, states, made), values, len(problem.quantities))
     where = {q.name: k for k, q in enumerate(quantities)}
-    base, out = test.gain([]), []
+    out = []
     for size in (1, 2)[:most]:
         for these in itertools.combinations(own, size):
             if len({one.name for one in these}) < size:
@@ -76,8 +75,34 @@ def scores(fit: Fit, most: int) -> list[Score]:
             gain, d = test.gain([where[q.name] for q in some.values()])
             if all(any(d[where[q.name]] for q in own[one].values()) for one in these):
                 guess = {name: q.neutral + d[where[q.name]] * q.scale for name, q in some.items()}
-                out.append(Score(tuple(sorted(these)), gain - base[0], guess))
+                out.append(Score(tuple(sorted(these)), gain, guess))
     return sorted(out, key=lambda score: -score.gain)
+
+
+_LARGEST_SHARE = 1.5
+
+
+def secants(
+    problem: FitProblem,
+    values: Mapping[str, float],
+    states: States,
+    made: Mapping[Segment, Simulation],
+    every: Mapping[Segment, Linearisation],
+) -> list[float]:
+    """What a share of each finite change of a prediction would gain, as a score: a derivative says
+    nothing of effects that set in suddenly.
+
+    every  the segments linearised in the quantities and then in the changes
+    """
+    fitted, size = len(problem.quantities), next(iter(states.values())).size
+    count = next(iter(every.values())).end.shape[1] - size - fitted
+    shares = tuple(
+        Quantity(f"share {k}", "", 0.0, 1.0, False, 0.0, _LARGEST_SHARE, 0.0) for k in range(count)
+    )
+    wide = replace(problem, quantities=(*problem.quantities, *shares))
+    values = {**values, **{q.name: 0.0 for q in shares}}
+    test = _Test.of(Linear.scaled(wide, every, states, made), values, fitted)
+    return [test.gain([fitted + k])[0] for k in range(count)]
 
 
 @dataclass(frozen=True)
@@ -89,8 +114,20 @@ class _Test:
     fitted: int
     prior: Array
 
+    @classmethod
+    def of(cls, linear: Linear, values: Mapping[str, float], fitted: int) -> _Test:
+        """Of what comes after the first `fitted` quantities of a linearised problem."""
+        problem = linear.problem
+        u = problem.scaled(values)
+        H, g, _ = summed(problem, linear.evidences(problem.q), u)
+        return cls(H, g, u, problem.box, fitted, problem.prior)
+
     def gain(self, own: Sequence[int]) -> tuple[float, Array]:
-        """Gain in -2 log marginal likelihood with some further columns, and the step."""
+        """Gain in -2 log marginal likelihood of some further columns, and the step."""
+        (before, _), (after, d) = self._lowered([]), self._lowered(own)
+        return after - before, d
+
+    def _lowered(self, own: Sequence[int]) -> tuple[float, Array]:
         keep = np.array([*range(self.fitted), *own], int)
         d = np.zeros(self.u.size)
         if not keep.size:

@@ -20,7 +20,7 @@ from rr_opt.sysid.candidates import Candidate, continued, first, fitted, quantit
 from rr_opt.sysid.estimation import predicted, solve
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
-from rr_opt.sysid.score_test import Score, lacking, scores, with_all
+from rr_opt.sysid.score_test import Score, scores, with_all
 from rr_opt.sysid.settings import SETTINGS
 
 Progress = Callable[[str], None]
@@ -43,7 +43,6 @@ class Selection:
     lookalikes: Sequence[Candidate] = ()
     _earlier: Mapping[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
-    _scores_of: dict[Candidate, list[Score]] = field(default_factory=dict)
     _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
     _plausibles: dict[Candidate, bool] = field(default_factory=dict)
     _contested: Candidate | None = None
@@ -221,20 +220,8 @@ class Selection:
         return all(best.predicts_better(one) for one in (self.best, *others))
 
     def _promising(self) -> list[Score]:
-        return [one for one in self._scores(self.best) if one.gain > 0]
-
-    def _scores(self, candidate: Candidate) -> list[Score]:
-        """Of one and of two effects beside a candidate's, best first."""
-        if candidate not in self._scores_of:
-            room = SETTINGS.most_effects - len(candidate.choices)
-            self._scores_of[candidate] = scores(candidate.fit, min(room, 2))
-        return self._scores_of[candidate]
-
-    def _unpromising(self, candidate: Candidate) -> list[str]:
-        """The effects whose scores beside a candidate are not among the most promising ones."""
-        single = (one.choices for one in self._scores(candidate) if len(one.choices) == 1)
-        ranked = [*dict.fromkeys(choice.name for (choice,) in single)]
-        return [name for name in lacking(candidate.fit) if name not in ranked[: SETTINGS.promising]]
+        room = SETTINGS.most_effects - len(self.best.choices)
+        return [one for one in scores(self.best.fit, min(room, 2)) if one.gain > 0]
 
     def _scored(self, promising: Sequence[Score], size: int) -> Iterator[Candidate]:
         """The most promising sets of so many further effects."""
@@ -267,6 +254,8 @@ class Selection:
                 fuller = Choice(choice.name, form)
                 guesses = [guess for one, guess in proposed if one == fuller]
                 guesses = guesses or self.model.catalogue[choice.name].forms[form].guesses
+                if not guesses:
+                    continue
                 known = {q: parent.fit.values[q] for q in own}
                 more = [{**guess, **known} for guess in guesses]
                 yield self.fitted((*rest, fuller), more, parent)
@@ -275,8 +264,7 @@ class Selection:
         if len(parent.choices) >= SETTINGS.most_effects:
             return
         guesses: dict[Choice, list[Mapping[str, float]]] = {}
-        others = (*parent.effects, *self._unpromising(parent))
-        for choice, guess in self.model.proposals(parent.fit, others):
+        for choice, guess in self.model.proposals(parent.fit, parent.effects):
             guesses.setdefault(choice, []).append(guess)
         yield from self._added((((one,), some) for one, some in guesses.items()), parent)
 
@@ -319,7 +307,8 @@ class Selection:
         for choice in best.choices:
             others = [one for one in best.choices if one is not choice]
             fewer = [[x for x in others if x is not one] for one in others]
-            for name in catalogue[choice.name].lookalikes:
+            # The machine may have one that is known.
+            for name in (one for one in catalogue[choice.name].lookalikes if one in catalogue):
                 self.progress(f"comparing {words_of(choice.name)} with {words_of(name)}")
                 # The effect's values under its name: a fit takes those that it has.
                 same = {

@@ -143,7 +143,7 @@ def actuation_sets(
     alone: list[_Set] = []
     alone = best_first(tried(plain))
     # Fuller forms and pairs begin from what single effects explain.
-    if none.score <= alone[0].score:
+    if not alone or none.score <= alone[0].score:
         return [((), {})]
     # Where one effect explains the angle, only cheap alternatives are tried.
     quick = angle.explained(alone[0])

@@ -5,6 +5,7 @@ is below the largest ratio that was needed.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import casadi as ca
@@ -12,15 +13,23 @@ import numpy as np
 
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.parameters import values_of
-from rr_opt.machines.racer.simulation import speeds_of
+from rr_opt.machines.racer.simulation import Change, speeds_of
 from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.mechanics.kane import equations
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, wheel_loads
 from rr_opt.motion.dynamics import assembled
+from rr_opt.sysid.candidates import tested
 from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.score_test import secants
+from rr_opt.sysid.settings import SETTINGS
+
+_SLIP = "lateral_slip"
 
 _FRACTIONS = (0.95, 0.6, 0.2, 0.03)
 """Fractions of the largest grip needed that are tried: from almost enough to hardly any."""
+
+_BEST = 3
+"""How many initial values are proposed."""
 
 
 @lru_cache
@@ -59,13 +68,48 @@ def grip_needed(racer: RacerModel, fit: Fit) -> float:
 
 
 def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float]]]:
-    """Initial values, by the form of `lateral_slip`."""
-    forms = racer.catalogue["lateral_slip"].forms
-    (creep,) = forms[0].quantities
-    most = grip_needed(racer, fit)
-    creeping = [(0, {creep.name: size * creep.scale}) for size in (0.3, 3.0)]
-    mu, gradual = "lateral_slip.mu", 0.3 * creep.scale
-    sliding = [(1, {creep.name: gradual, mu: part * most}) for part in _FRACTIONS]
-    # Wheels with hardly any grip also creep easily, and from there a fit sees more of the sliding.
-    ice = (1, {creep.name: 300 * creep.scale, mu: _FRACTIONS[-1] * most})
-    return [*creeping, *sliding, ice]
+    """Initial values of wheels that slide, by the form of `lateral_slip`: those that would explain
+    something, the best first."""
+    creep, mu, ratio = (q.name for q in racer.catalogue[_SLIP].forms[-1].quantities)
+    if mu in fit.problem.names:
+        # Costly, and at the wrong grip a share of it may gain nothing.
+        return [(2, {ratio: 1.0})] if fit.excess > SETTINGS.none else []
+    most, usual = grip_needed(racer, fit), racer.catalogue[_SLIP].forms[0].quantities[0].scale
+    gradual = fit.values.get(creep, 0.3 * usual)
+    guesses = [(1, {creep: gradual, mu: part * most}) for part in _FRACTIONS]
+    if _SLIP not in fit.effects:
+        # Wheels with hardly any grip also creep easily, and from there a fit sees more of the
+        # sliding.
+        guesses.append((1, {creep: 300 * usual, mu: _FRACTIONS[-1] * most}))
+    gains = _gains(racer, fit, [guess for _, guess in guesses])
+    ranked = sorted(zip(gains, range(len(guesses)), strict=True), reverse=True)
+    return [guesses[k] for gain, k in ranked if gain > 0][:_BEST]
+
+
+def _gains(racer: RacerModel, fit: Fit, guesses: Sequence[Mapping[str, float]]) -> list[float]:
+    """What a share of the change that each of the values makes would gain, as a score."""
+    simulator, problem = racer.simulator, tested(fit.problem, fit)
+    slipping = tuple(sorted({*fit.effects, _SLIP}))
+    requests = problem.requests(fit.values, fit.states)
+    here = simulator.paths(requests, fit.effects)
+    seen, ends = [], []
+    for guess in guesses:
+        values = {**fit.values, **guess}
+        moved = [replace(one, values=values) for one in requests]
+        begun = [replace(one, state=simulator.converted(one, slipping)) for one in moved]
+        made = simulator.paths(begun, slipping)
+        for one, (_, before, _, _), (_, after, _, _) in zip(moved, here, made, strict=True):
+            segment = one.segment._replace(first=one.segment.last)
+            last = replace(one, segment=segment, state=after.states[:, -1])
+            end = simulator.converted(last, fit.effects) - before.states[:, -1]
+            known = np.isfinite(end).all() and np.isfinite(after.seen).all()
+            seen.append(after.seen - before.seen if known else np.zeros_like(before.seen))
+            ends.append(end if known else np.zeros_like(end))
+    count = len(requests)
+    changes = [
+        Change(np.stack(seen[k::count], axis=-1), np.stack(ends[k::count], axis=-1))
+        for k in range(count)
+    ]
+    parts = simulator.linearise(requests, fit.effects, problem.names, changes)
+    every = dict(zip(problem.segments, parts, strict=True))
+    return secants(problem, fit.values, fit.states, fit.linear.made, every)

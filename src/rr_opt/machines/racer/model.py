@@ -127,15 +127,11 @@ class RacerModel:
     @cached_property
     def _told(self) -> OperatingRange:
         gaits = [run.gait for run in self.experiment.runs]
-        distances = [
-            np.nanmedian(np.hypot(*(np.diff(d.values[:: len(d.t) // 20, k]) for k in (0, 1))))
-            / np.median(np.diff(d.t[:: len(d.t) // 20]))
-            for d in self.runs
-        ]
+        speeds = [_usual_speed(d) for d in self.runs]
         fastest = max(gait.peak_rate for gait in gaits)
         places = np.vstack([d.values[:, :2] for d in self.runs])
         room = float(np.max(np.nanmax(places, axis=0) - np.nanmin(places, axis=0)))
-        speed = max(float(np.median(distances)), 1e-3)
+        speed = max(float(np.median(speeds)), 1e-3)
         return OperatingRange(self.experiment.robot, fastest, speed, room)
 
     def initial_state(
@@ -230,10 +226,18 @@ def _first(y: Array, segment: Segment) -> float:
     return float(y[known[np.argmin(np.abs(known - segment.first))]])
 
 
+def _usual_speed(data: Data) -> float:
+    """From about twenty places along a run, m/s."""
+    seen = np.flatnonzero(np.isfinite(data.values[:, :2]).all(axis=1))
+    some = seen[:: max(seen.size // 20, 1)]
+    way = np.hypot(*np.diff(data.values[some, :2], axis=0).T)
+    return float(np.median(way) / np.median(np.diff(data.t[some])))
+
+
 def _travelled(data: Data) -> Array:
     """Distance travelled, m (n,), from places half a second apart, to suppress noise."""
     seen = np.isfinite(data.values[:, :2]).all(axis=1)
-    at = np.arange(data.t[0], data.t[-1], 0.5)
+    at = np.append(np.arange(data.t[0], data.t[-1], 0.5), data.t[-1])
     x, y = (np.interp(at, data.t[seen], data.values[seen, k]) for k in (0, 1))
     way = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
     return np.interp(data.t, at, way)

@@ -20,7 +20,7 @@ from rr_opt.messages import listed
 from rr_opt.model.experiment import CHANNELS, Recording, Run, Start
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.diagnosis import NextExperiment
-from rr_opt.sysid.estimation import Fit, FitProblem, Linear, bounded_minimum
+from rr_opt.sysid.estimation import Fit, FitProblem, Linear, bounded_minimum, solve
 from rr_opt.sysid.model import Request, Segment
 
 _AMPLITUDES = (0.25, 0.45, 0.7, 1.0, 1.3)
@@ -43,6 +43,8 @@ _THEN = "Add it to experiment.yaml and diagnose again."
 
 _AT_ONCE = 8
 """Plans that are simulated together."""
+_STATE_STEPS = 3
+"""Gauss-Newton steps for the initial states, as a poor guess of them counts as a difference."""
 
 
 def next_experiment(
@@ -191,23 +193,30 @@ def _begun(
     return empty.simulator.converted(plain, best.effects)
 
 
+def _of_plans(planned: RacerModel, begun: Mapping[Segment, Array], fit: Fit) -> FitProblem:
+    return replace(fit.problem, model=planned, segments=tuple(begun), robust=False)
+
+
 def _linearised(
     planned: RacerModel, begun: Mapping[Segment, Array], fit: Fit
 ) -> tuple[FitProblem, Mapping[int, tuple[Array, float, Array]]]:
     """H, g and value of every plan for the fit's quantities, its initial state eliminated."""
-    problem = replace(fit.problem, model=planned, segments=tuple(begun), robust=False)
+    problem = _of_plans(planned, begun, fit)
     # Undivided runs need no simulation.
     evidences = Linear.of(problem, dict(fit.values), begun, {}).evidences(problem.q)
     return problem, {run: (e.H, e.excess + e.samples, e.g) for run, e in evidences.items()}
 
 
 def _separations(planned: RacerModel, begun: Mapping[Segment, Array], rival: Fit) -> Array:
-    """RMS misfit of the rival on each plan's recording after refitting, in sigma, linearised."""
+    """RMS misfit of the rival on each plan's recording after refitting, in sigma: its values are
+    refitted as linearised, beside initial states that suit it."""
     states = {
         one: planned.converted(Request(one, rival.values, state), rival.effects)
         for one, state in begun.items()
     }
-    problem, plans = _linearised(planned, states, rival)
+    held = replace(_of_plans(planned, begun, rival), quantities=(), values=dict(rival.values))
+    settled = solve(held, rival.values, states, _STATE_STEPS, 1.0)
+    problem, plans = _linearised(planned, settled.states, rival)
     H0, _, _ = rival.information()
     low, high = problem.box
     out = []

@@ -7,7 +7,7 @@ axles may slip it is x, y, psi, v and both side speeds.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import casadi as ca
@@ -111,6 +111,15 @@ def side_speeds(robot: Robot, gait: Gait, t: Array, values: Array) -> Array:
     return np.array(
         [to_left[0] + robot.platform1.c * w, to_left[1] - robot.platform2.c * (w + dphi)]
     )
+
+
+@dataclass(frozen=True)
+class Change:
+    """Finite changes of a segment's prediction: of what is seen (samples, channels, k), and of the
+    last state (size, k)."""
+
+    seen: Array
+    end: Array
 
 
 _Simulated = tuple[DrivePath, Path, Array, dict[str, float]]
@@ -245,9 +254,16 @@ class Simulator:
         ]
 
     def linearise(
-        self, requests: Sequence[Request], effects: tuple[str, ...], wanted: tuple[str, ...]
+        self,
+        requests: Sequence[Request],
+        effects: tuple[str, ...],
+        wanted: tuple[str, ...],
+        changes: Sequence[Change] | None = None,
     ) -> Sequence[Linearisation]:
-        """Linearise segments; see `sysid.model.Model`."""
+        """Linearise segments; see `sysid.model.Model`.
+
+        changes  of each segment's prediction, as further columns after the wanted quantities
+        """
         mechanical = self.every(effects)
         sought, paths = [], self.paths(requests, effects)
         known = {
@@ -266,7 +282,15 @@ class Simulator:
             drive_by = self.drive_slopes(one.segment, given, mechanical, wanted)
             seen = self.recorded(one.segment)
             sought.append(Sought(path, made, p, by[id(given)], drive_by, seen))
-        return [Linearisation(gram, end) for gram, end in grams(system, sought)]
+        if changes is None:
+            return [Linearisation(gram, end) for gram, end in grams(system, sought)]
+        sought = [
+            replace(one, more=change.seen) for one, change in zip(sought, changes, strict=True)
+        ]
+        return [
+            Linearisation(gram, np.hstack([end, change.end]))
+            for (gram, end), change in zip(grams(system, sought), changes, strict=True)
+        ]
 
     def paths(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:
         """Each segment's drive and simulation, the motion's parameters, and all values.
