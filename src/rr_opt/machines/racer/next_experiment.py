@@ -59,10 +59,15 @@ def next_experiment(
         return None
     # A few at a time: all steps of all plans would be large.
     batches = [plans[k : k + _AT_ONCE] for k in range(0, len(plans), _AT_ONCE)]
-    planned = [_planned(racer, best, some) for some in batches]
+    planned = (_planned(racer, best, some) for some in batches)
     if rival is not None:
         name, fit = rival
-        apart = np.concatenate([_separations(*some, fit) for some in planned])
+        experiments, separations = [], []
+        for model, begun in planned:
+            experiments.append((model.experiment, begun))
+            separations.append(_separations(model, begun, fit))
+        planned = ((racer.beside(one), begun) for one, begun in experiments)
+        apart = np.concatenate(separations)
         k = int(np.argmax(apart))
         if apart[k] > _TOLD_APART:
             sentence = (
@@ -171,7 +176,9 @@ def _planned(
     ]
     every = empty.simulator.paths(requests, best.effects)
     states = {one.segment: one.state for one in requests}
-    return made([path.seen for _, path, _, _ in every]), states
+    planned = made([path.seen for _, path, _, _ in every])
+    planned.simulator.reuse(empty.simulator)
+    return planned, states
 
 
 def _whole(times: Sequence[Array]) -> list[Segment]:

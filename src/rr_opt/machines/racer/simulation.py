@@ -302,6 +302,10 @@ class Simulator:
             last = self._last = effects, tuple(requests), self._simulated(requests, effects)
         return last[2]
 
+    def reuse(self, other: Simulator) -> None:
+        """Take over the last simulation of the same gaits."""
+        self._last = other._last
+
     def _simulated(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:
         mechanical = self.every(effects)
         # Most segments that are requested together have the same values.
