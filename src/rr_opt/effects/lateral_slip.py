@@ -90,9 +90,7 @@ EFFECT = Effect(
             model_form_sigma=0.03,
             sharp=True,
         ),
-        Parameter(
-            *("mu_ratio", "dimensionless", (0.0, 1.0), 1.0), initial_guesses=(1.0,), costly=True
-        ),
+        Parameter("mu_ratio", "dimensionless", (0.0, 1.0), 1.0, costly=True),
     ),
     sentence="The wheels slip sideways under load.",
     enter=_enter,
