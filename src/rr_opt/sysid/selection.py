@@ -266,7 +266,11 @@ class Selection:
         guesses: dict[Choice, list[Mapping[str, float]]] = {}
         for choice, guess in self.model.proposals(parent.fit, parent.effects):
             guesses.setdefault(choice, []).append(guess)
-        yield from self._added((((one,), some) for one, some in guesses.items()), parent)
+        keys = {one: tuple(sorted((*parent.choices, one))) for one in guesses}
+        before = {one: self.tried[key] for one, key in keys.items() if key in self.tried}
+        yield from self._added((((one,), guesses[one]) for one in guesses), parent)
+        for one, candidate in before.items():
+            yield self._again(candidate, parent, guesses[one])
 
     def _refine(self) -> None:
         """Choose the forms that predict best, even if the misfit is already insignificant."""
@@ -379,12 +383,20 @@ class Selection:
             # The fit below starts from there.
             self._compared.add((whole, key))
         part = self.fitted(key, [{}], whole)
-        if key and whole.predicts_better(part) and (whole, key) not in self._compared:
-            self._compared.add((whole, key))
-            again = fitted(self.model, key, whole.fit, [{}], part.fit)
-            if not again.given_up and again.fit.deviance < part.fit.deviance:
-                self.tried[key] = part = again
-        return part
+        return self._again(part, whole, [{}]) if key and whole.predicts_better(part) else part
+
+    def _again(
+        self, candidate: Candidate, start: Candidate, guesses: Sequence[Mapping[str, float]]
+    ) -> Candidate:
+        """A candidate or, if that fits better, the same from the values of another one and from
+        guesses, unless it was compared before."""
+        key = candidate.choices
+        if (start, key) not in self._compared:
+            self._compared.add((start, key))
+            again = fitted(self.model, key, start.fit, guesses, candidate.fit)
+            if not again.given_up and again.fit.deviance < candidate.fit.deviance:
+                self.tried[key] = candidate = again
+        return candidate
 
     def _simpler(self, candidate: Candidate) -> Iterator[Candidate]:
         for choice in candidate.choices:
