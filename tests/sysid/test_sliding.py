@@ -9,11 +9,12 @@ from rr_opt.machines.racer.grip import slips
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.machines.racer.simulation import side_speeds
 from rr_opt.model.gait import SineGait
-from rr_opt.sysid.candidates import fitted
+from rr_opt.sysid.candidates import Candidate, fitted
 from rr_opt.sysid.diagnose import diagnose
 from rr_opt.sysid.estimation import solve
 from rr_opt.sysid.model import Choice, Request, Segment
 from rr_opt.sysid.score_test import scores
+from rr_opt.sysid.selection import Selection
 from tests.sysid.made_up import GAITS, ROBOT, base_of, experiment, whole, with_effect
 
 SLIDES = {"lateral_slip.mu": 0.012}
@@ -204,3 +205,25 @@ def test_wheels_that_hardly_hold_are_found():
     guesses = [guess for form, guess in slips(model, bent) if form == 1]
     found = fitted(model, [Choice("lateral_slip", 1)], bent, guesses, bent)
     assert found.fit.values["lateral_slip.mu"] == pytest.approx(0.0012, rel=0.1)
+
+
+def test_slip_beside_a_nested_fit_begins_where_it_moves_something():
+    """Its compliance enters squared: from 0 a fit hardly moves."""
+    model = with_effect({}, (), seconds=3.0)
+    base = base_of(model)
+    search = Selection(model, base)
+    begun = []
+
+    def tried(model, key, parent, guesses, rival=None):
+        begun.extend(guesses)
+        return Candidate(tuple(key), base.fit)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rr_opt.sysid.selection.fitted", tried)
+        tilt = fitted(model, [Choice("floor_tilt")], base.fit, [{}])
+        search.tried[tilt.choices] = tilt
+        guess = {"floor_tilt.tilt_x": 0.1, "lateral_slip.creep_compliance": 0.003}
+        search.fitted([Choice("floor_tilt"), Choice("lateral_slip")], [guess])
+    assert begun[0] == guess
+    assert begun[1]["lateral_slip.creep_compliance"] == 0.003
+    assert begun[1]["floor_tilt.tilt_x"] == tilt.fit.values["floor_tilt.tilt_x"]

@@ -80,6 +80,7 @@ def scores(fit: Fit, most: int) -> list[Score]:
 
 
 _LARGEST_SHARE = 1.5
+"""Of a change: more of it is what another guess would make, as it is not in proportion."""
 
 
 def secants(

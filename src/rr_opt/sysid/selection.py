@@ -159,13 +159,21 @@ class Selection:
                 fit = earlier.fit
                 begun = [{q: fit.values[q] for q in fit.problem.names}]
             if nested:
-                begun.append({q: nested.fit.values[q] for q in nested.fit.problem.names})
+                known = {q: nested.fit.values[q] for q in nested.fit.problem.names}
+                begun.append({**self._suddenly(begun), **known})
             made = fitted(self.model, key, (parent or self.best).fit, begun, rival)
             if nested and not made.given_up and made.sacrifices(nested):
                 again = continued(self.model, key, nested.fit)
                 made = min(made, again, key=lambda one: one.fit.deviance)
             self.tried[key] = made
         return self.tried[key]
+
+    def _suddenly(self, guesses: Sequence[Mapping[str, float]]) -> Mapping[str, float]:
+        """Of the first guess, the values of effects that are not smooth: from where such an effect
+        vanishes a fit hardly moves."""
+        sudden = {name for name, info in self.model.catalogue.items() if not info.smooth}
+        every = guesses[0] if guesses else {}
+        return {q: value for q, value in every.items() if q.partition(".")[0] in sudden}
 
     def _nested(self, key: Sequence[Choice]) -> Candidate | None:
         """The best candidate that is nested in this one, which therefore fits no worse."""
