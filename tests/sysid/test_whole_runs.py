@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rr_opt.model.gait import SineGait
-from rr_opt.sysid.candidates import tested
+from rr_opt.sysid.candidates import trial_problem
 from rr_opt.sysid.estimation import fitted, whole_runs
 from rr_opt.sysid.settings import SETTINGS
 from tests.sysid.made_up import base_of, with_effect
@@ -34,4 +34,4 @@ def test_a_fit_of_segments_leads_to_one_of_whole_runs():
 def test_guesses_are_tried_on_all_runs_where_each_is_explained(tilt, count):
     hidden = {"floor_tilt.tilt_x": tilt, "floor_tilt.tilt_y": 0.0}
     fit = base_of(with_effect(hidden, ("floor_tilt",))).fit
-    assert len(tested(fit.problem, fit).by_run) == count
+    assert len(trial_problem(fit.problem, fit).by_run) == count

@@ -141,7 +141,7 @@ def fitted(
     plain = {q.name: q.centre for q in quantities}
     kept = {k: v for k, v in parent.values.items() if k in plain}
     unbent = {q.name: q.centre for q in model.parameters}
-    some, tolerance = tested(problem, parent), SETTINGS.search_tolerance
+    some, tolerance = trial_problem(problem, parent), SETTINGS.search_tolerance
 
     def begun(values: Mapping[str, float]) -> tuple[Fit, dict[Segment, Array]]:
         states = _converted(model, parent, names, values)
@@ -214,7 +214,7 @@ def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
     return Candidate(candidate.choices, estimation.fitted(problem, fit.values, begun))
 
 
-def tested(problem: FitProblem, parent: Fit) -> FitProblem:
+def trial_problem(problem: FitProblem, parent: Fit) -> FitProblem:
     """The problem restricted to the few runs that the parent explains worst; all, if it explains
     each of them to within chance."""
     worst = sorted(problem.by_run, key=lambda run: -parent.evidences[run].excess)

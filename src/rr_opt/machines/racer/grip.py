@@ -18,7 +18,7 @@ from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.mechanics.kane import equations
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, wheel_loads
 from rr_opt.motion.dynamics import assembled
-from rr_opt.sysid.candidates import tested
+from rr_opt.sysid.candidates import trial_problem
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.score_test import secants
 from rr_opt.sysid.settings import SETTINGS
@@ -90,7 +90,7 @@ def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float
 
 def _gains(racer: RacerModel, fit: Fit, guesses: Sequence[Mapping[str, float]]) -> list[float]:
     """What a share of the change that each of the values makes would gain, as a score."""
-    simulator, problem = racer.simulator, tested(fit.problem, fit)
+    simulator, problem = racer.simulator, trial_problem(fit.problem, fit)
     slipping = tuple(sorted({*fit.effects, _SLIP}))
     requests = problem.requests(fit.values, fit.states)
     here = simulator.paths(requests, fit.effects)
