@@ -114,7 +114,7 @@ class Effect:
     differentiable      the prediction is differentiable in its parameters where it vanishes
     tangent             if not: the effect that equals it to first order in its first form
     candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,
-                        what the experiment states of itself, nor a lookalike of others
+                        what the experiment states of itself, a lookalike or a tangent of others
     forms               which parameters are fitted together; without any, all of them
     form_error          relative deviation of real machines from this model of it: larger for
                         contacts and stops, for which many laws exist

@@ -160,7 +160,7 @@ class Selection:
                 begun = [{q: fit.values[q] for q in fit.problem.names}]
             if nested:
                 known = {q: nested.fit.values[q] for q in nested.fit.problem.names}
-                begun.append({**self._suddenly(begun), **known})
+                begun.append({**self._sudden_values(begun), **known})
             made = fitted(self.model, key, (parent or self.best).fit, begun, rival)
             if nested and not made.given_up and made.sacrifices(nested):
                 again = continued(self.model, key, nested.fit)
@@ -168,7 +168,7 @@ class Selection:
             self.tried[key] = made
         return self.tried[key]
 
-    def _suddenly(self, guesses: Sequence[Mapping[str, float]]) -> Mapping[str, float]:
+    def _sudden_values(self, guesses: Sequence[Mapping[str, float]]) -> Mapping[str, float]:
         """Of the first guess, the values of effects that are not smooth: from where such an effect
         vanishes a fit hardly moves."""
         sudden = {name for name, info in self.model.catalogue.items() if not info.smooth}
@@ -276,6 +276,8 @@ class Selection:
             guesses.setdefault(choice, []).append(guess)
         keys = {one: tuple(sorted((*parent.choices, one))) for one in guesses}
         before = {one: self.tried[key] for one, key in keys.items() if key in self.tried}
+        # Asked again, the others would be fitted from the same values.
+        self._compared |= {(parent, key) for one, key in keys.items() if one not in before}
         yield from self._added((((one,), guesses[one]) for one in guesses), parent)
         for one, candidate in before.items():
             yield self._again(candidate, parent, guesses[one])
@@ -319,7 +321,7 @@ class Selection:
         for choice in best.choices:
             others = [one for one in best.choices if one is not choice]
             fewer = [[x for x in others if x is not one] for one in others]
-            # The machine may have one that is known.
+            # One that the nominal model has is no candidate.
             for name in (one for one in catalogue[choice.name].lookalikes if one in catalogue):
                 self.progress(f"comparing {words_of(choice.name)} with {words_of(name)}")
                 # The effect's values under its name: a fit takes those that it has.

@@ -138,7 +138,7 @@ def _points(along: Along, count: int) -> Array:
 
 
 def _roots(squares: Array) -> Array:
-    """(segments, r, k): roots' roots are the squares (segments, k, k), but for rounding. r is less
+    """(segments, r, k): roots' roots are the squares (segments, k, k), to a part in 1e9. r is less
     than k, since wheels that are braked in the same moment do much the same."""
     value, vector = np.linalg.eigh(squares)
     some = (value > 1e-9 * value.max()).any(axis=0)
