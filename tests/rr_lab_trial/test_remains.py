@@ -40,3 +40,14 @@ def test_an_edge_that_the_robot_does_not_reach_any_more_leaves_nothing(case):
     both = _remains(replace(case, effects=(edge, DRAG)))
     assert both["floor_patch"] < 0.01
     assert both["quadratic_drag"] > 1
+
+
+def test_it_is_that_of_the_robot_as_it_is(case):
+    """A heavier one slides where the nominal one would not, and the other way round."""
+    from rr_opt.model.parameters import parameters_of, with_parameters
+
+    slip = EffectUse("lateral_slip/sliding", {"mu": 0.3})
+    lighter = {name: 0.6 * parameters_of(case.robot)[name] for name in ("m1", "m2", "I1", "I2")}
+    other = replace(case, nominal=with_parameters(case.robot, lighter), effects=(slip,))
+    own = _remains(replace(case, effects=(slip,)))
+    assert _remains(other) == own

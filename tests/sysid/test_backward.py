@@ -125,7 +125,7 @@ def test_an_effect_of_the_drive_in_another_form_is_substituted_not_added(monkeyp
     search.best = Made((Choice("floor"), Choice("play", 1)), 6.0)
     search._upstream = [(alone, {}), (both, {})]
     asked = []
-    monkeypatch.setattr(Selection, "fitted", lambda _, key, *__: asked.append(key) or search.best)
+    monkeypatch.setattr(Selection, "_asked", lambda _, key, *__: asked.append(key) or search.best)
     search._substitute()
     assert asked == [(Choice("floor"), *alone), (Choice("floor"), *both)]
 

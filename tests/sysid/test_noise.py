@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
 from rr_opt.sysid.model import ChannelNoise
-from rr_opt.sysid.noise import noise_of
+from rr_opt.sysid.noise import levelled, noise_of
 from tests.sysid.made_up import with_effect
 
 STEP, SAMPLES, RUNS = 0.01, 3000, 6
@@ -54,6 +54,21 @@ def test_level_and_worth(make, level, worth, lacking):
 def test_twice_the_noise_is_not_as_stated():
     assert estimated(lambda rng: 2 * white(rng)).differs()
     assert not estimated(white, lacking=True).differs()
+
+
+def test_model_error_does_not_pass_for_noise():
+    """It is stated as known as long as its spectrum allows."""
+
+    def lacking(rng):
+        return white(rng) + 0.4 * np.sin(2 * np.pi * 1.1 * STEP * np.arange(SAMPLES))
+
+    rng = np.random.default_rng(3)
+    runs = [lacking(rng) for _ in range(RUNS)]
+    assert np.std(np.concatenate(runs)) > 1.03
+    assert levelled(runs, [STEP] * RUNS, 2.0, 1.0) == ChannelNoise()
+    more = [1.3 * one for one in runs]
+    told = levelled(more, [STEP] * RUNS, 2.0, 1.0).level
+    assert told == pytest.approx(np.std(np.concatenate(more)), rel=1e-3)
 
 
 def test_missing_samples_take_no_part():

@@ -259,8 +259,9 @@ def _answer_text(case: Case, draw: Draw) -> str:
 
 def _remains(case: Case) -> dict[str, float]:
     """RMS in sigma that each effect, beside the others, leaves after re-fitting the parameters: a
-    robot with much drag, say, may not reach a patch that it would reach without."""
-    case = replace(case, robot=case.nominal, disturbance="")
+    robot with much drag, say, may not reach a patch that it would reach without; nor wheels slide
+    that would with the nominal values. Errors of these are not counted as the effect's."""
+    case = replace(case, nominal=case.robot, disturbance="")
     left = {}
     for use in case.effects:
         others = [one for one in case.effects if one is not use]

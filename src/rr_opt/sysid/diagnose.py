@@ -137,9 +137,9 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
             selection = selection.again(quieter)
             selection.run()
     result = weighed(selection, watch)
-    base, best = selection.base.fit, result.best
+    best = result.best
     with watch("locating the fault"):
-        before = dependences(base, *selection.model.unknown_inputs(base))
+        before = selection.dependences
         after = before
         if best.choices or wrong(best.fit):
             after = dependences(best.fit, *selection.model.unknown_inputs(best.fit))

@@ -45,15 +45,25 @@ def noise_in(fit: Fit) -> list[ChannelNoise] | None:
     steps = [float(np.median(np.diff(problem.model.runs[run].t))) for run in runs]
     slow = problem.model.bandwidth
     noise = [
-        _levelled([left[:, k] for left in runs.values()], steps, slow) for k in range(channels)
+        levelled([left[:, k] for left in runs.values()], steps, slow, assumed[k])
+        for k in range(channels)
     ]
     differs = any(one.differs(c) for one, c in zip(noise, assumed.tolist(), strict=True))
     return noise if differs else None
 
 
-def _levelled(residuals: Sequence[Array], steps: Sequence[float], slow: float) -> ChannelNoise:
-    """The noise in residuals; its level is their RMS if the spectral estimate is close to that."""
+def levelled(
+    residuals: Sequence[Array], steps: Sequence[float], slow: float, assumed: float
+) -> ChannelNoise:
+    """The noise in residuals, as `noise_of` takes them: as assumed unless the spectrum contradicts
+    it, or model error would pass for noise. If it does, the level is their RMS where the spectral
+    estimate is close to that.
+
+    assumed  their correlation
+    """
     noise = noise_of(residuals, steps, slow)
+    if not noise.differs(assumed):
+        return ChannelNoise(correlation=assumed)
     every = np.concatenate(residuals)
     rms = float(np.sqrt(np.mean(every[every != 0] ** 2))) if every.any() else noise.level
     near = abs(math.log(rms / noise.level)) < SETTINGS.misstated

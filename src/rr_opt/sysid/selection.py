@@ -20,6 +20,7 @@ from rr_opt.sysid.candidates import Candidate, continued, first, fitted, quantit
 from rr_opt.sysid.estimation import predicted, solve
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
+from rr_opt.sysid.remainder import Dependence, dependences
 from rr_opt.sysid.score_test import Score, scores, with_all
 from rr_opt.sysid.settings import SETTINGS
 
@@ -116,9 +117,19 @@ class Selection:
         return candidate.predicts_better(other) and not self._enough(other)
 
     def _enough(self, candidate: Candidate) -> bool:
-        """Whether it is complete. The nominal model must also predict held-out recordings, as these
-        may show plainly what the fitted ones hardly do."""
-        return self.complete(candidate) and (bool(candidate.choices) or self.foreseen)
+        """Whether it is complete. From the nominal model nothing may be certainly missing either,
+        and it must predict held-out recordings, as these may show plainly what the fitted ones
+        hardly do."""
+        return self.complete(candidate) and (
+            bool(candidate.choices)
+            or (self.foreseen and not any(one.certain for one in self.dependences))
+        )
+
+    @cached_property
+    def dependences(self) -> Sequence[Dependence]:
+        """What unknown inputs would explain beside the nominal model."""
+        fit = self.base.fit
+        return dependences(fit, *self.model.unknown_inputs(fit))
 
     @cached_property
     def foreseen(self) -> bool:
@@ -129,12 +140,12 @@ class Selection:
         return not held or predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also removes a good share of the other's misfit, and that misfit exceeds the
-        form error of the other's effects."""
+        """Whether it also removes a good share of the other's misfit; all of it, if that is within
+        the form error of the other's effects."""
         return (
             self._better(candidate, other)
-            and not self._close(other)
             and candidate.accounts(other) > SETTINGS.accounted
+            and (not self._close(other) or self.complete(candidate))
         )
 
     def _close(self, candidate: Candidate) -> bool:
@@ -237,13 +248,10 @@ class Selection:
         yield from self._added((one.choices, [one.guess]) for one in some)
 
     def _added(
-        self,
-        asked: Iterable[tuple[Sequence[Choice], Sequence[Mapping[str, float]]]],
-        beside: Candidate | None = None,
+        self, asked: Iterable[tuple[Sequence[Choice], Sequence[Mapping[str, float]]]]
     ) -> Iterator[Candidate]:
-        """A candidate, the best unless another is given, with further effects, started from guesses
-        of their values."""
-        parent, every = beside or self.best, [*asked]
+        """The best candidate with further effects, started from guesses of their values."""
+        parent, every = self.best, [*asked]
         self.model.prepare((*parent.effects, *(c.name for c in more)) for more, _ in every)
         for more, guesses in every:
             yield self.fitted((*parent.choices, *more), guesses, parent)
@@ -274,13 +282,19 @@ class Selection:
         guesses: dict[Choice, list[Mapping[str, float]]] = {}
         for choice, guess in self.model.proposals(parent.fit, parent.effects):
             guesses.setdefault(choice, []).append(guess)
-        keys = {one: tuple(sorted((*parent.choices, one))) for one in guesses}
-        before = {one: self.tried[key] for one, key in keys.items() if key in self.tried}
-        # Asked again, the others would be fitted from the same values.
-        self._compared |= {(parent, key) for one, key in keys.items() if one not in before}
-        yield from self._added((((one,), guesses[one]) for one in guesses), parent)
-        for one, candidate in before.items():
-            yield self._again(candidate, parent, guesses[one])
+        self.model.prepare((*parent.effects, one.name) for one in guesses)
+        for one, own in guesses.items():
+            yield self._asked((*parent.choices, one), own, parent)
+
+    def _asked(
+        self, choices: Sequence[Choice], guesses: Sequence[Mapping[str, float]], parent: Candidate
+    ) -> Candidate:
+        """The candidate with these effects; if it was fitted before, from these guesses too."""
+        key = tuple(sorted(choices))
+        if key in self.tried:
+            return self._again(self.tried[key], parent, guesses)
+        self._compared.add((parent, key))
+        return self.fitted(key, guesses, parent)
 
     def _refine(self) -> None:
         """Choose the forms that predict best, even if the misfit is already insignificant."""
@@ -292,8 +306,10 @@ class Selection:
         every = {choice.name for choices, _ in self._upstream for choice in choices}
         rest = [choice for choice in self.best.choices if choice.name not in every]
         if len(rest) < len(self.best.choices):
-            others = [self.fitted((*rest, *some), [values]) for some, values in self._upstream]
-            self.best = _best((self.best, *others)) or self.best
+            best = self.best
+            asked = [((*rest, *some), values) for some, values in self._upstream]
+            others = [self._asked(x, [v], best) for x, v in asked if {*x} != {*best.choices}]
+            self.best = _best((best, *others)) or best
 
     def _contest(self) -> None:
         """Try the lookalikes of the answer's effects in their place: an effect imitates the one
