@@ -10,11 +10,12 @@ import pytest
 from rr_opt import interrupt
 from rr_opt.motion.dynamics import values_of
 from rr_opt.motion.floor_motion import floor_motion
-from rr_opt.sysid import compiled
+from rr_opt.sysid import compiled, paths
 from rr_opt.sysid import shooting as shoot
 from rr_opt.sysid.compiled import found
-from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
-from rr_opt.sysid.shooting import DrivePath, predict_all
+from rr_opt.sysid.paths import DrivePath, DriveSlopes, Recorded, Sought
+from rr_opt.sysid.sensitivities import grams
+from rr_opt.sysid.shooting import predict_all
 from tests.robots import BENCHMARK
 from tests.sysid.test_slopes import CASES
 
@@ -90,7 +91,7 @@ def test_few_runs_in_pieces(name, monkeypatch):
     plain = both(system, drives, starts, p)
     monkeypatch.setattr(shoot, "_FEW", 0)
     monkeypatch.setattr(shoot, "_PAYS", 0)
-    monkeypatch.setattr(compiled, "_SHORTEST", 10)
+    monkeypatch.setattr(paths, "_SHORTEST", 10)
     fast = both(replace(system, lasts=True), drives, starts, p)
     for fast_grams, plain_grams in zip(fast[1:], plain[1:], strict=True):
         for (a, a_end), (b, b_end) in zip(fast_grams, plain_grams, strict=True):
@@ -153,7 +154,7 @@ def test_what_leaves_the_numbers_counts_for_nothing(monkeypatch):
         drive, replace(made, states=states, seen=lost), np.array(p), wanted, None, recorded
     )
     whole = Sought(drive, made, np.array(p), wanted, None, first)
-    monkeypatch.setattr(compiled, "_SHORTEST", 10)
+    monkeypatch.setattr(paths, "_SHORTEST", 10)
     for few in (10**9, 0):
         monkeypatch.setattr(shoot, "_FEW", few)
         monkeypatch.setattr(shoot, "_PAYS", few)

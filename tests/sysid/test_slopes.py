@@ -11,8 +11,9 @@ import pytest
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.dynamics import values_of
 from rr_opt.motion.floor_motion import floor_motion
+from rr_opt.sysid.paths import DrivePath
 from rr_opt.sysid.sensitivities import slopes
-from rr_opt.sysid.shooting import DrivePath, System, predict
+from rr_opt.sysid.shooting import System, predict
 from tests.robots import BENCHMARK
 
 GAIT = SineGait(0.6, 1.0, 0.1)

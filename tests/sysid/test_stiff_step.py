@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rr_opt.sysid.shooting import DrivePath, System, predict
+from rr_opt.sysid.paths import DrivePath
+from rr_opt.sysid.shooting import System, predict
 
 
 def system(fast: float, bend: float) -> System:

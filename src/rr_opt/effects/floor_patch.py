@@ -5,7 +5,8 @@ It is a circle about (x, y) or, if its radius is 0, a strip that starts at a str
 feels the floor under itself, which multiplies its viscous drag and its dry friction, but not a drag
 that grows with the square of the speed, such as that of the air.
 
-The border is smoothed over 5 mm, about the length of a wheel's contact with a carpet.
+The border, of a strip the nearer one, is smoothed over 5 mm, about the length of a wheel's contact
+with a carpet.
 """
 
 import math
@@ -27,15 +28,12 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
         distance = ca.sqrt(ca.sumsqr(from_centre) + BORDER**2 / 100)
         into = ca.vertcat(ca.cos(values["normal"]), ca.sin(values["normal"]))
         beyond = ca.dot(place - ca.vertcat(values["edge_x"], values["edge_y"]), into)
-        strip = _inside(beyond) * _inside(values["width"] - beyond)
-        inside = ca.if_else(values["radius"] > 0, _inside(values["radius"] - distance), strip)
+        strip = ca.fmin(beyond, values["width"] - beyond)
+        depth = ca.if_else(values["radius"] > 0, values["radius"] - distance, strip)
+        inside = (1 + ca.tanh(depth / BORDER)) / 2
         return wheel.resistance(u) * (values["multiplier"] - 1) * inside
 
     return with_resistance(mechanism, law)
-
-
-def _inside(depth: ca.SX) -> ca.SX:
-    return (1 + ca.tanh(depth / BORDER)) / 2
 
 
 def _near(operated: OperatingRange) -> float:

@@ -10,8 +10,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.model.machine import Machine, MachineEffect, MachineRun, Scales, Signals
-from rr_opt.sysid.sensitivities import DriveSlopes
-from rr_opt.sysid.shooting import DrivePath
+from rr_opt.sysid.paths import DrivePath, DriveSlopes
 
 _KEPT = 8
 """Sets of constants whose drives are cached."""

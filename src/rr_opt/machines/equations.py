@@ -15,8 +15,8 @@ from rr_opt.model.machine import Machine, MachineEffect, MachineRun, Scales
 from rr_opt.model.parameters import Uncertainty
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import EffectInfo, Form, Quantity, Request
-from rr_opt.sysid.sensitivities import DriveSlopes
-from rr_opt.sysid.shooting import DrivePath, Path, System
+from rr_opt.sysid.paths import DrivePath, DriveSlopes, Path
+from rr_opt.sysid.shooting import System
 from rr_opt.units import Number
 
 _EVERY = 0.05

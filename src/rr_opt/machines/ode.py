@@ -39,9 +39,10 @@ from rr_opt.sysid.model import (
     Segment,
     Simulation,
 )
-from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
+from rr_opt.sysid.paths import DrivePath, DriveSlopes, Path, Recorded, Sought
+from rr_opt.sysid.sensitivities import grams
 from rr_opt.sysid.settings import SETTINGS
-from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all, prepare
+from rr_opt.sysid.shooting import System, predict_all, prepare
 
 _EARLY = 0.05
 """s, from which the state at the beginning of a segment is estimated."""

@@ -13,9 +13,8 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.model.machine import MachineExperiment, MachineRun, Signals
 from rr_opt.sysid.model import Data, Linearisation, Request, Segment, segments
-from rr_opt.sysid.sensitivities import Recorded
+from rr_opt.sysid.paths import DrivePath, Path, Recorded
 from rr_opt.sysid.settings import SETTINGS
-from rr_opt.sysid.shooting import DrivePath, Path
 
 _LENGTHS = (0.125, 0.25, 0.5, 1.0, 2.0)
 """Lengths of windows, s."""

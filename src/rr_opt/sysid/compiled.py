@@ -10,7 +10,6 @@ from __future__ import annotations
 import ctypes
 import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import casadi as ca
@@ -19,6 +18,7 @@ import numpy as np
 from rr_opt.array import Array, Indices
 from rr_opt.mechanics.code_generation import in_stages, source_file
 from rr_opt.mechanics.compile_cache import library
+from rr_opt.sysid.paths import Sought
 from rr_opt.threads import in_threads
 
 _FLAGS = (
@@ -31,9 +31,6 @@ _WORTH = 100
 
 _SIDE_BY_SIDE = 16
 """Few runs are linearised in pieces, up to so many in all: their states are known."""
-
-_SHORTEST = 100
-"""Fewest samples in a piece."""
 
 
 class _CompiledRun(ctypes.Structure):
@@ -49,55 +46,6 @@ class _CompiledRun(ctypes.Structure):
             )
         ),
     )
-
-
-@dataclass(frozen=True)
-class Rows:
-    """Input to the sums over derivatives, of one run; arrays are row-major.
-
-    inputs, at, each, p, states  as `Compiled.predict` takes and gives them
-    wanted  (np, nq) dp/dq
-    moved   d(drive)/dq at the samples (drive, samples, k) and in the middle of the steps
-            (drive, steps, k), of those q that move it, and which they are (k,)
-    data, weight  (samples, channels) what was recorded, and 1/sigma, 0 where nothing was
-    more    (samples, channels, k) further columns
-    """
-
-    inputs: Array
-    at: Array
-    each: int
-    p: Array
-    states: Array
-    wanted: Array
-    moved: tuple[Array, Array, Indices] | None
-    data: Array
-    weight: Array
-    more: Array | None = None
-
-    def pieces(self, count: int) -> list[Rows]:
-        """Cut into up to `count` pieces; a sample between two of them is the later one's."""
-        samples = self.at.shape[1] - 1
-        count = max(min(count, samples // _SHORTEST), 1)
-        edges = [samples * k // count for k in range(count + 1)]
-        return [self._piece(a, b, samples) for a, b in itertools.pairwise(edges)]
-
-    def _piece(self, first: int, last: int, samples: int) -> Rows:
-        steps, seen = slice(first * self.each, last * self.each), slice(first, last + 1)
-        weight = self.weight[seen]
-        if last < samples:
-            weight = weight.copy()
-            weight[-1] = 0.0
-        moved = self.moved and (self.moved[0][:, seen], self.moved[1][:, steps], self.moved[2])
-        return replace(
-            self,
-            inputs=self.inputs[steps],
-            at=self.at[:, seen],
-            states=self.states[:, steps.start : steps.stop + 1],
-            moved=moved,
-            data=self.data[seen],
-            weight=weight,
-            more=None if self.more is None else self.more[seen],
-        )
 
 
 class Compiled:
@@ -138,7 +86,7 @@ class Compiled:
         self._at_once(work, held, [each for *_, each, _ in runs])
         return made
 
-    def grams(self, runs: Sequence[Rows]) -> list[tuple[Array, Array]]:
+    def grams(self, runs: Sequence[Sought]) -> list[tuple[Array, Array]]:
         """J'J of each run, (n, n), with J = [d/dstart | d/dq | more | predicted - recorded] in
         sigmas; and the derivatives of its last state (size, size + nq) by start and q.
 
@@ -148,7 +96,7 @@ class Compiled:
         made = iter(self._grams([piece for pieces in cut for piece in pieces]))
         return [_joined([next(made) for _ in pieces]) for pieces in cut]
 
-    def _grams(self, runs: Sequence[Rows]) -> list[tuple[Array, Array]]:
+    def _grams(self, runs: Sequence[Sought]) -> list[tuple[Array, Array]]:
         first = runs[0]
         shapes = {(run.wanted.shape, run.more is None or run.more.shape[2]) for run in runs}
         if len(shapes) > 1:
@@ -159,34 +107,34 @@ class Compiled:
         nq, extras = first.wanted.shape[1], 0 if first.more is None else first.more.shape[2]
         moving = _moving(runs)
         n = self._size + nq + extras + 1
-        drive = first.at.shape[0]
+        drive = first.path.at.shape[0]
         out = [(np.empty((n, n)), np.empty((self._size, self._size + nq))) for _ in runs]
         held = []
         for run, (gram, end) in zip(runs, out, strict=True):
-            moved: dict[str, Array] = {}
+            path, by, more = run.path, run.drive_by, {}
             if moving.size:
-                at = np.zeros((len(run.data), drive, moving.size))
-                middle = np.zeros((len(run.inputs), drive, moving.size))
-                if run.moved:
-                    own = np.searchsorted(moving, run.moved[2])
-                    at[:, :, own] = run.moved[0].transpose(1, 0, 2)
-                    middle[:, :, own] = run.moved[1].transpose(1, 0, 2)
-                moved = {"moved_at": at, "moved": middle}
+                at = np.zeros((path.at.shape[1], drive, moving.size))
+                middle = np.zeros((path.h.size, drive, moving.size))
+                if by:
+                    own = np.searchsorted(moving, by.columns)
+                    at[:, :, own] = by.at.transpose(1, 0, 2)
+                    middle[:, :, own] = by.middle.transpose(1, 0, 2)
+                more |= {"moved_at": at, "moved": middle}
             if run.more is not None:
-                moved["more"] = run.more
+                more["more"] = run.more
             held.append(
                 _Held(
-                    steps=len(run.inputs),
-                    inputs=run.inputs,
-                    at=run.at.T,
+                    steps=path.h.size,
+                    inputs=path.inputs,
+                    at=path.at.T,
                     p=run.p,
-                    states=run.states.T,
+                    states=run.made.states.T,
                     value=run.wanted[row, column],
-                    data=run.data,
-                    weight=run.weight,
+                    data=run.recorded.values,
+                    weight=run.recorded.weight,
                     gram=gram,
                     end=end,
-                    **moved,
+                    **more,
                 )
             )
 
@@ -199,7 +147,7 @@ class Compiled:
             if not done:
                 raise MemoryError
 
-        self._at_once(work, held, [run.each for run in runs])
+        self._at_once(work, held, [run.path.each for run in runs])
         return out
 
     def _at_once(
@@ -233,9 +181,9 @@ def _joined(pieces: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
     return total, carried
 
 
-def _moving(runs: Sequence[Rows]) -> Indices:
+def _moving(runs: Sequence[Sought]) -> Indices:
     """The columns of q that move the drive of any run (k,)."""
-    moving = [run.moved[2] for run in runs if run.moved]
+    moving = [run.drive_by.columns for run in runs if run.drive_by]
     return np.unique(np.concatenate([np.zeros(0, np.int64), *moving]).astype(np.int64))
 
 

@@ -664,7 +664,9 @@ def _stepped(
         if gain > 0:
             full = attempt == 0 and math.isfinite(expected)
             trust.stretch = min(max(gain / expected, 1.0), 2.0) if full else 1.0
-            if attempt == 0 and not gain < 0.5 * expected:
+            if gain < 0.25 * expected:
+                trust.radius = 0.3 * longest
+            elif attempt == 0 and not gain < 0.5 * expected:
                 trust.radius = min(max(trust.radius, 3 * longest), SETTINGS.stride)
             return after, expected
         trust.radius, trust.stretch = 0.3 * longest, 1.0

@@ -11,44 +11,19 @@ residual.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.array import Array, Indices
-from rr_opt.sysid.compiled import Rows
-from rr_opt.sysid.shooting import DrivePath, Path, System, arrays_of, code_of
+from rr_opt.array import Array
+from rr_opt.sysid.paths import DrivePath, DriveSlopes, Path, Sought
+from rr_opt.sysid.shooting import System, arrays_of, code_of
 
 Jacobian = tuple[Array, Array, Array]
 
 _STEPS_AT_ONCE = 4000
 """Steps per array evaluation: fewer cost more calls, more cost memory."""
-
-
-@dataclass(frozen=True)
-class DriveSlopes:
-    """Derivatives of the drive by those wanted quantities that move it.
-
-    at       (size, samples, k) at the samples
-    middle   (size, steps, k) in the middle of each step
-    columns  (k,) indices of these quantities
-    """
-
-    at: Array
-    middle: Array
-    columns: Indices
-
-    def part(self, first: int, last: int, each: int) -> DriveSlopes:
-        """From sample `first` to sample `last`, with `each` steps between two samples."""
-        middle = self.middle[:, first * each : last * each]
-        return DriveSlopes(self.at[:, first : last + 1], middle, self.columns)
-
-    def coarser(self, count: int) -> DriveSlopes:
-        """In steps of so many each."""
-        size, steps, k = self.middle.shape
-        middle = self.middle.reshape(size, steps // count, count, k).mean(axis=2)
-        return DriveSlopes(self.at, middle, self.columns)
 
 
 @dataclass(frozen=True)
@@ -227,49 +202,6 @@ def _split(parts, rows: int, nd: int, np_: int, count: int, nx: int | None = Non
     return dense[:, :, :nx], dense[:, :, nx : nx + nd], dense[:, :, nx + nd :]
 
 
-@dataclass(frozen=True)
-class Recorded:
-    """What was recorded (samples, channels), 0 for no data, and 1/sigma, 0 for no data."""
-
-    values: Array
-    weight: Array
-
-    @classmethod
-    def of(cls, values: Array, sigma: Array) -> Recorded:
-        """From values that are NaN where there are no data."""
-        seen = np.isfinite(values)
-        return cls(np.where(seen, values, 0.0), np.where(seen, 1 / sigma, 0.0))
-
-    def off(self, predicted: Array) -> Array:
-        """(predicted - recorded)/sigma, 0 for no data."""
-        return (predicted - self.values) * self.weight
-
-
-@dataclass(frozen=True)
-class Sought:
-    """A predicted run, and what to differentiate it by; see `linear`.
-
-    more  (samples, channels, k) further columns
-    """
-
-    path: DrivePath
-    made: Path
-    p: Array
-    wanted: Array
-    drive_by: DriveSlopes | None
-    recorded: Recorded
-    more: Array | None = None
-
-    @property
-    def coarse(self) -> Sought:
-        """The same in the steps of derivatives."""
-        count, by = self.path.fine, self.drive_by
-        if count == 1:
-            return self
-        by = by and by.coarser(count)
-        return replace(self, path=self.path.coarse, made=self.made.coarser(count), drive_by=by)
-
-
 def grams(system: System, asked: Sequence[Sought]) -> list[tuple[Array, Array]]:
     """J'J (n, n) of each run, without samples where the prediction is not finite; and derivatives
     of its last state (size, size + nw) by initial state and wanted quantities."""
@@ -277,22 +209,13 @@ def grams(system: System, asked: Sequence[Sought]) -> list[tuple[Array, Array]]:
         return []
     asked = [one.coarse for one in asked]
     code = code_of(system, 4 * sum(one.path.h.size for one in asked))
-    return code.grams([_rows(one) for one in asked]) if code else [_gram(system, a) for a in asked]
+    return code.grams(asked) if code else [_gram(system, a) for a in asked]
 
 
 def gram_of(*columns: Array) -> Array:
     """J'J of columns (samples, k) side by side."""
     J = np.column_stack(columns)
     return J.T @ J
-
-
-def _rows(one: Sought) -> Rows:
-    by, path = one.drive_by, one.path
-    return Rows(
-        *(path.inputs, path.at, path.each, one.p, one.made.states, one.wanted),
-        (by.at, by.middle, by.columns) if by else None,
-        *(one.recorded.values, one.recorded.weight, one.more),
-    )
 
 
 def _gram(system: System, one: Sought) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
-from functools import cached_property, lru_cache, partial
+from functools import lru_cache, partial
 
 import casadi as ca
 import numpy as np
@@ -21,6 +21,7 @@ from rr_opt import interrupt
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays, source_file
 from rr_opt.sysid.compiled import Compiled, found, source_of
+from rr_opt.sysid.paths import DrivePath, Path
 from rr_opt.threads import in_background
 
 _FEW, _PAYS = 10_000, 100_000
@@ -49,59 +50,6 @@ class System:
     stiff: int = 0
     jumps: bool = False
     lasts: bool = False
-
-
-@dataclass(frozen=True)
-class DrivePath:
-    """The drive over all steps of a run.
-
-    h      (steps,) s, `each` of them between two samples
-    nodes  (size, 3, steps) at the beginning, in the middle and at the end of each step
-    at     (size, samples) at the samples
-    fine   how many steps derivatives take as one
-    """
-
-    h: Array
-    nodes: Array
-    at: Array
-    each: int
-    fine: int = 1
-
-    @cached_property
-    def inputs(self) -> Array:
-        """(steps, 1 + 3 size): each step's length, and its drive at all three places."""
-        nodes = self.nodes.transpose(2, 1, 0).reshape(self.h.size, -1)
-        return np.column_stack([self.h, nodes])
-
-    def part(self, first: int, last: int) -> DrivePath:
-        """From sample `first` to sample `last`."""
-        during = slice(first * self.each, last * self.each)
-        h, nodes, at = self.h[during], self.nodes[:, :, during], self.at[:, first : last + 1]
-        return DrivePath(h, nodes, at, self.each, self.fine)
-
-    @cached_property
-    def coarse(self) -> DrivePath:
-        """In the steps of derivatives."""
-        return self.coarser(self.fine)
-
-    def coarser(self, count: int) -> DrivePath:
-        """In steps of so many each; their middle is the mean."""
-        split = self.nodes.reshape(*self.nodes.shape[:2], -1, count)
-        nodes = split[:, 0, :, 0], split[:, 1].mean(axis=2), split[:, 2, :, -1]
-        h = self.h.reshape(-1, count).sum(axis=1)
-        return DrivePath(h, np.stack(nodes, axis=1), self.at, self.each // count)
-
-
-@dataclass(frozen=True)
-class Path:
-    """The states (size, steps + 1) of a run and its outputs (samples, channels)."""
-
-    states: Array
-    seen: Array
-
-    def coarser(self, count: int) -> Path:
-        """In steps of so many each."""
-        return Path(self.states[:, ::count], self.seen)
 
 
 def predict(system: System, path: DrivePath, start: Array, p: Array) -> Path:

@@ -14,8 +14,7 @@ from rr_opt.machines.racer.parameters import values_of
 from rr_opt.mechanics.drive import Drive, FreeJoint, commanded
 from rr_opt.model.experiment import Run
 from rr_opt.motion.floor_motion import free_joint_of
-from rr_opt.sysid.sensitivities import DriveSlopes
-from rr_opt.sysid.shooting import DrivePath
+from rr_opt.sysid.paths import DrivePath, DriveSlopes
 
 _LONGEST, _SHARP, _STIFF, _SHARPEST = 0.012, 0.003, 0.0008, 0.0004
 """Longest step, s: in general, with dry friction or a gear that gives, with wheels that creep (also

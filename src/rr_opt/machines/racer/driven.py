@@ -33,7 +33,8 @@ from rr_opt.motion.floor_motion import FloorMotion, floor_motion
 from rr_opt.motion.servo import linear_servo, servo_drive
 from rr_opt.motion.steady_cycle import Cycle, cycle_of
 from rr_opt.outcome import NotConvergedError
-from rr_opt.sysid.shooting import DrivePath, System, predict
+from rr_opt.sysid.paths import DrivePath
+from rr_opt.sysid.shooting import System, predict
 
 _SAMPLES = 256
 """Samples per period, with at least one step between two."""

@@ -14,7 +14,7 @@ from rr_opt.machines.racer.simulation import speeds_of
 from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.model import Request, Segment
-from rr_opt.sysid.shooting import DrivePath, Path
+from rr_opt.sysid.paths import DrivePath, Path
 
 _WINDOW = 0.5
 """The prediction's error changes little over this time, s."""

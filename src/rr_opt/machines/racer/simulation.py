@@ -35,8 +35,9 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 from rr_opt.motion.floor_motion import FloorMotion, floor_motion
 from rr_opt.sysid.model import Data, Linearisation, Request, Segment, Simulation
-from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
-from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all, prepare
+from rr_opt.sysid.paths import DrivePath, DriveSlopes, Path, Recorded, Sought
+from rr_opt.sysid.sensitivities import grams
+from rr_opt.sysid.shooting import System, predict_all, prepare
 
 V = 3
 """Index of z or v in the state."""

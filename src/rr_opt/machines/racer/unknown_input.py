@@ -31,8 +31,9 @@ from rr_opt.motion.floor_motion import FloorMotion, solved
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Request, Segment
-from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, linear
-from rr_opt.sysid.shooting import DrivePath, System
+from rr_opt.sysid.paths import DrivePath, DriveSlopes
+from rr_opt.sysid.sensitivities import Hats, LinearMotion, Part, linear
+from rr_opt.sysid.shooting import System
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
