@@ -122,8 +122,10 @@ def changed(changes: Mapping[str, Any]) -> Iterator[None]:
             object.__setattr__(SETTINGS, name, value)
 
 
-def varied(value: float, factor: float) -> float:
+def varied(value: Any, factor: float) -> Any:
     """A setting times a factor: a count stays one, a share near 1 has its odds multiplied."""
+    if isinstance(value, tuple):
+        return tuple(varied(one, factor) for one in value)
     if isinstance(value, int):
         return max(round(value * factor), 1)
     if 0.5 <= value < 1:

@@ -59,6 +59,7 @@ def test_variants():
     assert varied(1, 0.5) == 1
     assert varied(0.5, 2.0) == pytest.approx(2 / 3)
     assert varied(0.2, 2.0) == 0.4
+    assert varied((0.3, 30.0), 2.0) == (0.6, 60.0)
     assert list(variants(["further"])) == ["as chosen", "further halved", "further doubled"]
     assert "growth halved" not in variants([])
 

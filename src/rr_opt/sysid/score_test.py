@@ -16,6 +16,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.sysid.estimation import Fit, FitProblem, Linear, States, bounded_minimum, root, summed
 from rr_opt.sysid.model import Choice, Linearisation, Quantity, Request, Segment, Simulation
+from rr_opt.sysid.settings import SETTINGS
 
 
 @dataclass(frozen=True)
@@ -79,10 +80,6 @@ def scores(fit: Fit, most: int) -> list[Score]:
     return sorted(out, key=lambda score: -score.gain)
 
 
-_LARGEST_SHARE = 1.5
-"""Of a change: more of it is what another guess would make, as it is not in proportion."""
-
-
 def secants(
     problem: FitProblem,
     values: Mapping[str, float],
@@ -98,7 +95,8 @@ def secants(
     fitted, size = len(problem.quantities), next(iter(states.values())).size
     count = next(iter(every.values())).end.shape[1] - size - fitted
     shares = tuple(
-        Quantity(f"share {k}", "", 0.0, 1.0, False, 0.0, _LARGEST_SHARE, 0.0) for k in range(count)
+        Quantity(f"share {k}", "", 0.0, 1.0, False, 0.0, SETTINGS.largest_share, 0.0)
+        for k in range(count)
     )
     wide = replace(problem, quantities=(*problem.quantities, *shares))
     values = {**values, **{q.name: 0.0 for q in shares}}

@@ -69,6 +69,13 @@ class Settings:
     modes                 error modes that a missing force causes in a window, beside those that
                           its initial state absorbs
     windows               windows in a part of a recording that is predicted from the others
+    grips                 shares of the largest grip needed at which sliding is tried, from almost
+                          enough to hardly any
+    creeps                creep that is tried beside it, in usual sizes: wheels with hardly any grip
+                          creep easily, and from there a fit sees more of the sliding
+    slips                 guesses of sliding that are fitted, the best ones
+    largest_share         of the change that a guess makes; more is another guess's, as it is not in
+                          proportion
     """
 
     correlation_time: float = 1.0
@@ -115,6 +122,10 @@ class Settings:
     input_noise: float = 6.0
     modes: int = 4
     windows: int = 2
+    grips: tuple[float, ...] = (0.95, 0.6, 0.2, 0.03)
+    creeps: tuple[float, ...] = (0.3, 30.0, 300.0)
+    slips: int = 3
+    largest_share: float = 1.5
 
 
 SETTINGS = Settings()

@@ -25,16 +25,6 @@ from rr_opt.sysid.settings import SETTINGS
 
 _SLIP = "lateral_slip"
 
-_FRACTIONS = (0.95, 0.6, 0.2, 0.03)
-"""Fractions of the largest grip needed that are tried: from almost enough to hardly any."""
-
-_CREEPS = (0.3, 30.0, 300.0)
-"""Creep that is tried, in usual sizes. Wheels with hardly any grip also creep easily, and from
-there a fit sees more of the sliding."""
-
-_BEST = 3
-"""How many initial values are proposed."""
-
 
 @lru_cache
 def _needed() -> ArrayFunction:
@@ -79,13 +69,15 @@ def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float
         # Costly, and at the wrong grip a share of it may gain nothing.
         return [(2, {ratio: 1.0})] if fit.excess > SETTINGS.none else []
     most, usual = grip_needed(racer, fit), racer.catalogue[_SLIP].forms[0].quantities[0].scale
-    creeps = [fit.values[creep]] if _SLIP in fit.effects else [size * usual for size in _CREEPS]
-    guesses = [(1, {creep: c, mu: part * most}) for c in creeps for part in _FRACTIONS]
+    creeps = (
+        [fit.values[creep]] if _SLIP in fit.effects else [size * usual for size in SETTINGS.creeps]
+    )
+    guesses = [(1, {creep: c, mu: part * most}) for c in creeps for part in SETTINGS.grips]
     # Less creep than that is seen by the score test.
     guesses += [(0, {creep: c}) for c in creeps[1:]]
     gains = _gains(racer, fit, [guess for _, guess in guesses])
     ranked = sorted(zip(gains, range(len(guesses)), strict=True), reverse=True)
-    return [guesses[k] for gain, k in ranked if gain > 0][:_BEST]
+    return [guesses[k] for gain, k in ranked if gain > 0][: SETTINGS.slips]
 
 
 def _gains(racer: RacerModel, fit: Fit, guesses: Sequence[Mapping[str, float]]) -> list[float]:
