@@ -396,20 +396,17 @@ class Selection:
                 return
             self.best = best
 
-    def _fewer(self, candidate: Candidate) -> Iterator[Candidate]:
-        parts = [tuple(c for c in candidate.choices if c is not one) for one in candidate.choices]
+    def _fewer(self, whole: Candidate) -> Iterator[Candidate]:
+        """The candidates with one effect less. Before one counts as worse it is also fitted from
+        the whole's values, as its own search may have ended in another minimum."""
+        parts = [tuple(c for c in whole.choices if c is not one) for one in whole.choices]
         self.model.prepare(tuple(c.name for c in part) for part in parts)
         for part in parts:
-            yield self._part(candidate, part)
-
-    def _part(self, whole: Candidate, key: tuple[Choice, ...]) -> Candidate:
-        """A candidate with fewer effects. Before it counts as worse it is also fitted from the
-        whole's values, as its own search may have ended in another minimum."""
-        if key not in self.tried:
-            # The fit below starts from there.
-            self._compared.add((whole, key))
-        part = self.fitted(key, [{}], whole)
-        return self._again(part, whole, [{}]) if key and whole.predicts_better(part) else part
+            known = self.tried.get(part)
+            if known and not (part and whole.predicts_better(known)):
+                yield known
+            else:
+                yield self._asked(part, [{}], whole)
 
     def _again(
         self, candidate: Candidate, start: Candidate, guesses: Sequence[Mapping[str, float]]
