@@ -6,9 +6,7 @@ from typing import Any
 
 import pytest
 
-from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.selection import Selection
-from rr_opt.sysid.settings import SETTINGS
 
 
 def candidate(elpd: float, values: int, *effects: str) -> Any:
@@ -46,12 +44,3 @@ BOTH = candidate(4.0, 3, "clock", "lag")
 )
 def test_the_answer_among_them(tied, chosen):
     assert Tied(*tied)._simplest() is chosen
-
-
-@pytest.mark.parametrize(
-    ("left", "enough"), [(0.5 * SETTINGS.negligible, True), (SETTINGS.negligible, False)]
-)
-def test_of_a_misfit_of_none_noise_may_leave_a_little(left, enough):
-    own, other = SimpleNamespace(excess=left), SimpleNamespace(excess=0.0)
-    share = Candidate.accounts(own, other)  # pyright: ignore
-    assert (share > SETTINGS.accounted) is enough

@@ -112,7 +112,7 @@ class Near(Selection):
 
 @pytest.mark.parametrize(("form_error", "kept"), [(0.07, True), (0.08, False)])
 def test_what_machines_differ_by_calls_for_no_second_effect(form_error, kept):
-    both: Any = SimpleNamespace(accounts=lambda _: 0.36)
+    both: Any = SimpleNamespace()
     selection = Near(form_error)
     assert selection.needed(both, selection.best) == kept
     selection.run()

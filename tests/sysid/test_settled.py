@@ -1,12 +1,10 @@
 """When a forward step is settled, and which candidate it takes."""
 
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
 
@@ -23,9 +21,6 @@ class Made:
 
     def predicts_better(self, other) -> bool:
         return self.elpd > other.elpd + 5
-
-    def advances(self, _) -> bool:
-        return True
 
 
 class Settling(Selection):
@@ -75,7 +70,7 @@ def test_two_effects_are_tried_where_no_single_one_wins(alone, pairs):
         def _extended(self) -> Any:
             return []
 
-        def _proposed(self, parent) -> Any:
+        def _proposed(self) -> Any:
             return [Made((Choice("slip"),), alone)]
 
     selection = Imitated(elpd=-50.0)
@@ -85,63 +80,3 @@ def test_two_effects_are_tried_where_no_single_one_wins(alone, pairs):
     else:
         selection._forward()
         assert selection.best.effects == ("slip",)
-
-
-def test_a_step_that_advances_is_taken_before_one_that_predicts_better():
-    class Forked(Settling):
-        def complete(self, candidate):
-            return False
-
-        def _scored(self, promising, size) -> Any:
-            return [Made((Choice("drag"),), 0.0)] if size == 1 else []
-
-        def _extended(self) -> Any:
-            return [Standing((Choice("tilt"),), 4.0)]
-
-        def _proposed(self, parent) -> Any:
-            return []
-
-    class Standing(Made):
-        def advances(self, _) -> bool:
-            return False
-
-    selection = Forked(elpd=-50.0)
-    selection._forward()
-    assert selection.best.effects == ("drag",)
-
-
-@pytest.mark.parametrize(
-    ("whole", "segments", "taken"),
-    [(0.8, 1.0, True), (1.1, 0.8, True), (0.85, 0.85, False), (1.1, 0.99, False)],
-)
-def test_a_step_that_leaves_about_as_much_is_not_taken(whole, segments, taken):
-    """Mean squares of .64 and .72 of what there was; a third has to go."""
-
-    def left(excess: float, in_segments: float) -> Any:
-        fit: Any = SimpleNamespace(excess=in_segments)
-        one = Candidate((), fit)
-        one.__dict__["simulated"] = SimpleNamespace(excess=excess)
-        return one
-
-    assert left(2 * whole, 3 * segments).advances(left(2.0, 3.0)) == taken
-
-    class Bending(Settling):
-        def complete(self, candidate):
-            return False
-
-        def _scored(self, promising, size) -> Any:
-            return [Advancing((Choice("drag"),), 0.0)] if size == 1 else []
-
-        def _extended(self) -> Any:
-            return []
-
-        def _proposed(self, parent) -> Any:
-            return []
-
-    class Advancing(Made):
-        def advances(self, _) -> bool:
-            return taken
-
-    selection = Bending(elpd=0.0)
-    selection._forward()
-    assert bool(selection.best.choices) == taken

@@ -75,37 +75,12 @@ class Candidate:
         spread = float(np.std(gains, ddof=1)) if gains.size > 1 else math.inf
         return float(gains.sum()), math.sqrt(gains.size) * spread
 
-    def accounts(self, other: Candidate) -> float:
-        """Share of the other's excess misfit over whole runs (mean square) that it removes."""
-        # Of a misfit below the negligible level, noise may have left nothing.
-        return _explained(self.excess, max(other.excess, SETTINGS.negligible))
-
-    def advances(self, other: Candidate) -> bool:
-        """Whether it removes a good share of that misfit, or of the misfit in segments, where the
-        errors it still has accumulate less. If neither, it only absorbs errors of another kind."""
-        in_segments = _explained(self.fit.excess, other.fit.excess)
-        return in_segments > SETTINGS.accounted or self.accounts(other) > SETTINGS.accounted
-
-    def sacrifices(self, other: Candidate) -> bool:
-        """Whether it leaves a multiple of the squared error in a run that another one leaves, which
-        lacks some of its effects. Its best fit would not, but robust losses allow giving up a run.
-        """
-        before, factor = other.fit.evidences, SETTINGS.sacrificed
-        return any(
-            e.excess + e.samples > factor * (before[run].excess + before[run].samples)
-            for run, e in self.fit.evidences.items()
-        )
-
     def predicts_better(self, other: Candidate) -> bool:
         """Whether the predictive evidence is enough to prefer it."""
         if self.given_up or not math.isfinite(other.elpd):
             return not self.given_up
         gain, error = self.advantage(other)
         return gain > max(SETTINGS.evidence, SETTINGS.standard_errors * error)
-
-
-def _explained(excess: float, other: float) -> float:
-    return 1 - excess**2 / max(other**2, 1e-12)
 
 
 def quantities_of(model: Model, choices: Sequence[Choice]) -> tuple[Quantity, ...]:
@@ -175,23 +150,8 @@ def fitted(
         return Candidate(ordered, estimation.solve(problem, best.values, begun_with, 0), True)
     enough = rival.deviance if rival else math.inf
     fit = estimation.fitted(problem, best.values, begun_with, enough=enough, tolerance=tolerance)
-    return _judged(ordered, fit, enough)
-
-
-def continued(model: Model, choices: Sequence[Choice], nested: Fit) -> Candidate:
-    """Fit a set of effects, starting from the fit, to the same runs, of a part of them."""
-    ordered = tuple(sorted(choices))
-    problem = _problem(model, ordered, nested)
-    values = {q.name: nested.values.get(q.name, q.centre) for q in problem.quantities}
-    states = _converted(model, nested, problem.effects, values)
-    tolerance = SETTINGS.search_tolerance
-    return _judged(ordered, estimation.fitted(problem, values, states, tolerance=tolerance))
-
-
-def _judged(choices: tuple[Choice, ...], fit: Fit, enough: float = math.inf) -> Candidate:
-    """Given up if it was stopped behind what is enough, or cannot simulate a recording."""
     stopped = not fit.converged and fit.deviance > enough
-    return Candidate(choices, fit, stopped or not math.isfinite(fit.deviance))
+    return Candidate(ordered, fit, stopped or not math.isfinite(fit.deviance))
 
 
 def _problem(model: Model, choices: Sequence[Choice], parent: Fit) -> FitProblem:

@@ -71,10 +71,7 @@ def surprises(fit: Fit) -> Array:
     s = np.sqrt(np.clip(np.diag(np.linalg.pinv(H, hermitian=True)), 1e-300, None))
     usual = np.sqrt(np.maximum(1 - np.minimum(s, 1.0) ** 2, 1e-300))
     own = np.array([q.free for q in quantities])
-    seen = s < SETTINGS.identifiable
-    scale = np.where(
-        own, np.sqrt(np.maximum(np.diag(covariance(fit)), 1e-300)), np.where(seen, usual, np.inf)
-    )
+    scale = np.where(own, np.sqrt(np.maximum(np.diag(covariance(fit)), 1e-300)), usual)
     return np.where([q.known for q in quantities], fit.u / scale, 0.0)
 
 

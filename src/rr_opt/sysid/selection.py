@@ -16,7 +16,7 @@ from functools import cached_property
 from types import MappingProxyType
 
 from rr_opt.formatting import words_of
-from rr_opt.sysid.candidates import Candidate, continued, first, fitted, quantities_of, weights
+from rr_opt.sysid.candidates import Candidate, first, fitted, quantities_of, weights
 from rr_opt.sysid.estimation import predicted, solve
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
@@ -140,12 +140,10 @@ class Selection:
         return not held or predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also removes a good share of the other's misfit; all of it, if that is within
-        the form error of the other's effects."""
-        return (
-            self._better(candidate, other)
-            and candidate.accounts(other) > SETTINGS.accounted
-            and (not self._close(other) or self.complete(candidate))
+        """Whether it also leaves nothing, if what the other leaves is within the form error of its
+        effects."""
+        return self._better(candidate, other) and (
+            not self._close(other) or self.complete(candidate)
         )
 
     def _close(self, candidate: Candidate) -> bool:
@@ -172,11 +170,7 @@ class Selection:
             if nested:
                 known = {q: nested.fit.values[q] for q in nested.fit.problem.names}
                 begun.append({**self._sudden_values(begun), **known})
-            made = fitted(self.model, key, (parent or self.best).fit, begun, rival)
-            if nested and not made.given_up and made.sacrifices(nested):
-                again = continued(self.model, key, nested.fit)
-                made = min(made, again, key=lambda one: one.fit.deviance)
-            self.tried[key] = made
+            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, begun, rival)
         return self.tried[key]
 
     def _sudden_values(self, guesses: Sequence[Mapping[str, float]]) -> Mapping[str, float]:
@@ -205,8 +199,7 @@ class Selection:
 
     def _forward(self) -> None:
         """A forward step; the search is widened until one candidate clearly wins: two effects are
-        tried at once only where no single one does, and proposals beside the best single one only
-        where those are no step from the nominal model either."""
+        tried at once only where no single one does."""
         self.progress("testing candidate effects")
         promising = self._promising()
         found = [*self._scored(promising, 1)]
@@ -215,19 +208,12 @@ class Selection:
             found += self._extended()
         if not self._settled(found):
             self.progress("searching for effects without derivatives")
-            found += self._proposed(self.best)
+            found += self._proposed()
         if not (alone and self.complete(alone)) and not self._settled(found):
             found += self._scored(promising, 2)
-        stuck = not (self.best.choices or self._advance(_best(found)))
-        if stuck and alone and alone.predicts_better(self.best):
-            found += self._proposed(alone)
-        # The best first: it takes a fit over whole runs to tell.
-        ranked = sorted(found, key=lambda one: -one.elpd)
-        self.best = next((one for one in ranked if self._advance(one)), self.best)
-
-    def _advance(self, found: Candidate | None) -> bool:
-        """Whether a candidate is a step forward."""
-        return bool(found and found.predicts_better(self.best) and found.advances(self.best))
+        step = _best(found)
+        if step and step.predicts_better(self.best):
+            self.best = step
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
         """Whether one more effect is complete and predicts better than all alternatives. If not, it
@@ -276,7 +262,8 @@ class Selection:
                 more = [{**guess, **known} for guess in guesses]
                 yield self.fitted((*rest, fuller), more, parent)
 
-    def _proposed(self, parent: Candidate) -> Iterator[Candidate]:
+    def _proposed(self) -> Iterator[Candidate]:
+        parent = self.best
         if len(parent.choices) >= SETTINGS.most_effects:
             return
         guesses: dict[Choice, list[Mapping[str, float]]] = {}

@@ -26,13 +26,10 @@ class Settings:
     first_steps           steps of a fit before the process noise is estimated
     patience              a fit that is behind another is given up unless this many steps like its
                           last one would catch up
-    sacrificed            factor on the squared error that a part of the effects leaves in a run at
-                          which the whole has ended in a wrong minimum: its best fit leaves less
     steps                 most steps of a fit
     negligible            RMS misfit beyond the noise, in sigma, allowed to the nominal model
     none                  the same with effects, as no machine matches the model of an effect
     small                 share of the initial excess misfit below which a remainder is small
-    accounted             share of the misfit without an effect that the effect has to remove
     slow                  Hz, below which motion may be the machine's; above it is noise
     shown                 share of the total information on a combination of values below which a
                           recording says nothing about it
@@ -51,7 +48,6 @@ class Settings:
     standard_errors       and by how many standard errors of that improvement over recordings
     named                 confidence above which an effect is named
     false_alarm           chance that any value is called wrong when all are right
-    identifiable          posterior over prior standard deviation above which data say nothing
 
     Of machines:
 
@@ -92,12 +88,10 @@ class Settings:
     trial_steps: int = 4
     first_steps: int = 4
     patience: float = 10.0
-    sacrificed: float = 2.0
     steps: int = 15
     negligible: float = 0.1
     none: float = 0.2
     small: float = 0.01
-    accounted: float = 1 / 3
     slow: float = 2.0
     shown: float = 0.01
     inconstant: float = 100.0
@@ -112,7 +106,6 @@ class Settings:
     standard_errors: float = 0.5
     named: float = 0.5
     false_alarm: float = 0.01
-    identifiable: float = 0.999
     form_error: float = 1e-4
     starting: float = 0.05
     bouncing: float = 0.5
