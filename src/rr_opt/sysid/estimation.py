@@ -531,13 +531,12 @@ def solve(
                for one in problem.segments}  # fmt: skip
         if any(not np.array_equal(own[one], states[one]) for one in own):
             here = here.joined(_Point.of(problem, u, own))
-    trust, converged = _Trust(), False
+    radius, converged = SETTINGS.stride, False
     linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
     for _ in range(steps):
         least = max(tolerance, relative * (here.cost - sum(problem.degrees.values())))
-        stretched = trust.stretch > 1.0
-        better, expected = _stepped(linear, evidences, here, trust, least)
+        better, expected, radius = _stepped(linear, evidences, here, radius, least)
         if better is None:
             converged = True
             break
@@ -547,7 +546,7 @@ def solve(
             # At the edge of where the model can be simulated.
             break
         here, linear, evidences = better, there, found
-        if gain < least and not stretched:
+        if gain < least:
             converged = True
             break
         lacking = _deviance(problem, evidences, here.u) - enough
@@ -621,34 +620,23 @@ class _Point:
         return Linear.of(self.problem, self.problem.valued(self.u), self.states, self.made)
 
 
-@dataclass
-class _Trust:
-    """How far the linearisation is trusted.
-
-    radius   longest step, in scaled quantities
-    stretch  factor on a step, up to 2: robust losses are less curved than their quadratic model
-    """
-
-    radius: float = SETTINGS.stride
-    stretch: float = 1.0
-
-
 def _stepped(
-    linear: Linear, evidences: Mapping[int, Evidence], here: _Point, trust: _Trust, least: float
-) -> tuple[_Point | None, float]:
-    """A better point, and the gain expected of the step to it; None if that is below `least` or no
-    step gains. In runs that a step makes worse, the states take only a share of it."""
+    linear: Linear, evidences: Mapping[int, Evidence], here: _Point, radius: float, least: float
+) -> tuple[_Point | None, float, float]:
+    """A better point, None if less than `least` is to be gained or no step gains; the gain expected
+    of the step to it; and how far the linearisation is trusted next, in scaled quantities.
+
+    In runs that a step makes worse, the states take only a share of the next one.
+    """
     problem, expected = linear.problem, 0.0
-    low, high = problem.box
     shares = dict.fromkeys(problem.by_run, 1.0)
     H, g, _ = summed(problem, evidences, here.u)
     for attempt in range(_ATTEMPTS):
-        d = _step(H, g, trust.radius, here.u, problem.box)
+        d = _step(H, g, radius, here.u, problem.box)
         losses = _expected(evidences, here, d, shares)
         expected = here.cost - _cost(problem, here.u + d, losses)
         if math.isfinite(expected) and expected < least:
             break
-        d = np.clip(trust.stretch * d, low - here.u, high - here.u)
         after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
         for less in (0.3, 0.0):
             if after.cost < here.cost or attempt > 0:
@@ -662,17 +650,15 @@ def _stepped(
             after = after.joined(_Point.of(part, here.u + d, states))
         gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
         if gain > 0:
-            full = attempt == 0 and math.isfinite(expected)
-            trust.stretch = min(max(gain / expected, 1.0), 2.0) if full else 1.0
             if gain < 0.25 * expected:
-                trust.radius = 0.3 * longest
+                radius = 0.3 * longest
             elif attempt == 0 and not gain < 0.5 * expected:
-                trust.radius = min(max(trust.radius, 3 * longest), SETTINGS.stride)
-            return after, expected
-        trust.radius, trust.stretch = 0.3 * longest, 1.0
+                radius = min(max(radius, 3 * longest), SETTINGS.stride)
+            return after, expected, radius
+        radius = 0.3 * longest
         for run in _astray(after, here, losses):
             shares[run] = 0.3 * shares[run] if shares[run] > 0.1 else 0.0
-    return None, expected
+    return None, expected, radius
 
 
 def _astray(after: _Point, here: _Point, losses: Mapping[int, float]) -> list[int]:
