@@ -41,10 +41,11 @@ def test_again_from_the_solution():
 
 
 def test_it_is_as_near_as_it_says():
-    model = Counting()
+    # With model error losses are robust, and no step ends at the optimum.
+    model = Counting(disturbed=0.3)
     problem, states = begun(model)
     rough, exact = (solve(problem, BEGIN, states, 50, tolerance) for tolerance in (0.5, 1e-9))
-    assert exact.deviance <= rough.deviance < exact.deviance + 0.5
+    assert exact.deviance < rough.deviance < exact.deviance + 0.5
     # Half a nat is what a whole standard deviation in one direction would cost.
     H, _, _ = exact.information()
     off = rough.u - exact.u

@@ -70,7 +70,7 @@ def _answer(result: Identification) -> Diagnosis:
     model, base = selection.model, selection.base
     found = named(result, verdict)
     faulty = verdict in ("missing_physics", "unexplained")
-    located = stages(result.before, model.inputs, base.excess, faulty=faulty)
+    located = stages(selection.dependences, model.inputs, base.excess, faulty=faulty)
     guilty = next((one for one in located if one.guilty), None)
     channel = guilty.channel if guilty else "none"
     if verdict == "missing_physics" and found:
@@ -81,7 +81,7 @@ def _answer(result: Identification) -> Diagnosis:
         # The best predictor, though what it still lacks cannot be named.
         last = min(levels, key=lambda one: one.rms)
         if last is not result.final:
-            fit, known, beside = base.fit, estimates(base.fit), result.before
+            fit, known, beside = base.fit, estimates(base.fit), selection.dependences
     remainder = remainder_of(result, last)
     if remainder.size != "none" and beside:
         remainder = replace(remainder, depends_on=where(beside[0], model.inputs))
@@ -139,11 +139,10 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
     result = weighed(selection, watch)
     best = result.best
     with watch("locating the fault"):
-        before = selection.dependences
-        after = before
+        after = selection.dependences
         if best.choices or wrong(best.fit):
             after = dependences(best.fit, *selection.model.unknown_inputs(best.fit))
-    return replace(result, before=before, after=after)
+    return replace(result, after=after)
 
 
 def weighed(selection: Selection, watch: Stopwatch) -> Identification:

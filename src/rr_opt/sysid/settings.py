@@ -16,7 +16,7 @@ class Settings:
     stride                longest step in a quantity, in its scales
     tolerance             expected gain of a step, in nats of deviance, below which the fit has
                           converged: its values are within a thirtieth of a standard deviation
-    search_tolerance      the same for candidates: a small share of what counts as evidence
+    search_tolerance      the same for candidates: a twenty-fifth of what counts as evidence
     known                 share of the negligible level to which misfits of whole runs are known
     known_share           share of itself to which that of a fit is: slow creep is not followed
     trial_runs            number of runs, the worst explained ones, on which guesses are tried; all

@@ -67,7 +67,6 @@ class Identification:
     nominal: Evaluation
     refitted: Evaluation
     final: Evaluation
-    before: Sequence[Dependence] = ()
     after: Sequence[Dependence] = ()
 
     @cached_property

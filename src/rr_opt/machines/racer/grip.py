@@ -69,9 +69,9 @@ def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float
         # Costly, and at the wrong grip a share of it may gain nothing.
         return [(2, {ratio: 1.0})] if fit.excess > SETTINGS.none else []
     most, usual = grip_needed(racer, fit), racer.catalogue[_SLIP].forms[0].quantities[0].scale
-    creeps = (
-        [fit.values[creep]] if _SLIP in fit.effects else [size * usual for size in SETTINGS.creeps]
-    )
+    creeps = [size * usual for size in SETTINGS.creeps]
+    if _SLIP in fit.effects:
+        creeps = [fit.values[creep]]
     guesses = [(1, {creep: c, mu: part * most}) for c in creeps for part in SETTINGS.grips]
     # Less creep than that is seen by the score test.
     guesses += [(0, {creep: c}) for c in creeps[1:]]
