@@ -156,7 +156,8 @@ def remainder_text(one: Remainder) -> str:
 
 def share_text(finding: Finding) -> str:
     """The share of the mismatch that it explains."""
-    return f"{100 * finding.removes:.0f} %"
+    share = 100 * finding.removes
+    return f"{share:.0f} %" if share >= 0.5 else "less than 0.5 %"
 
 
 def stage_words(stages: Sequence[Stage]) -> list[str]:

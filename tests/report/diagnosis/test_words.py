@@ -8,9 +8,15 @@ from typing import Any
 import pytest
 
 from rr_opt.machines.pendulum import PENDULUM
-from rr_opt.results.diagnosis_tables import headline, interval_text, tie_text, value_text
+from rr_opt.results.diagnosis_tables import (
+    headline,
+    interval_text,
+    share_text,
+    tie_text,
+    value_text,
+)
 from rr_opt.results.machine_diagnosis import ExplainedMachine
-from rr_opt.sysid.diagnosis import Estimate, Tie
+from rr_opt.sysid.diagnosis import Estimate, Finding, Tie
 
 
 @pytest.mark.parametrize(
@@ -98,3 +104,10 @@ def test_the_next_recording_is_asked_for_as_in_the_summary(missing, consistent):
     assert any(line.startswith("record next") for line in missing.summary().splitlines())
     settled = replace(consistent, found=replace(consistent.found, next_experiment=plan))
     assert plan.sentence not in settled.summary()
+
+
+@pytest.mark.parametrize(
+    ("removes", "told"), [(1.0, "100 %"), (0.006, "1 %"), (0.004, "less than 0.5 %")]
+)
+def test_what_is_named_explains_something(removes, told):
+    assert share_text(Finding("quadratic_drag", 0.7, {}, removes)) == told
