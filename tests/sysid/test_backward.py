@@ -84,10 +84,9 @@ class Near(Selection):
     """One effect leaves 7.5 % of the first misfit (RMS)."""
 
     def __init__(self, form_error: float) -> None:
-        known = {"a": SimpleNamespace(form_error=form_error)}
-        self.model, self.base = SimpleNamespace(catalogue=known), MADE[()]  # pyright: ignore
+        self.base: Any = MADE[()]
         self.best: Any = SimpleNamespace(
-            choices=("a",), effects=("a",), excess=0.075 * MADE[()].excess
+            choices=("a",), form_errors={"a": form_error}, excess=0.075 * MADE[()].excess
         )
         self.forward = 0
 
@@ -112,11 +111,19 @@ class Near(Selection):
 
 @pytest.mark.parametrize(("form_error", "kept"), [(0.07, True), (0.08, False)])
 def test_what_machines_differ_by_calls_for_no_second_effect(form_error, kept):
-    both: Any = SimpleNamespace()
+    both: Any = SimpleNamespace(excess=0.0)
     selection = Near(form_error)
     assert selection.needed(both, selection.best) == kept
     selection.run()
     assert selection.forward == kept
+
+
+@pytest.mark.parametrize(("left", "kept"), [(0.073, False), (0.07, True)])
+def test_a_second_effect_is_needed_if_it_removes_more_than_machines_differ_by(left, kept):
+    """Of 7.5 % it has to remove 2 %, in squares."""
+    both: Any = SimpleNamespace(excess=left * MADE[()].excess)
+    selection = Near(0.02)
+    assert selection.needed(both, selection.best) == kept
 
 
 def test_an_effect_of_the_drive_in_another_form_is_substituted_not_added(monkeypatch):

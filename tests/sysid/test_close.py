@@ -19,8 +19,7 @@ from rr_opt.sysid.selection import Selection
     ],
 )
 def test_which_misfits_are_within_the_form_error(effects, left, first, within):
-    catalogue = {"slip": SimpleNamespace(form_error=0.1), "lag": SimpleNamespace(form_error=0.02)}
-    search: Any = SimpleNamespace(
-        model=SimpleNamespace(catalogue=catalogue), base=SimpleNamespace(excess=first)
-    )
-    assert Selection._close(search, SimpleNamespace(effects=effects, excess=left)) is within
+    search: Any = SimpleNamespace(base=SimpleNamespace(excess=first))
+    known = {"slip": 0.1, "lag": 0.02}
+    one: Any = SimpleNamespace(form_errors={name: known[name] for name in effects}, excess=left)
+    assert Selection._close(search, one) is within

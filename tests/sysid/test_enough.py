@@ -40,8 +40,10 @@ def test_beside_the_nominal_model_nothing_may_be_certainly_missing(known, enough
     [(False, False, True), (False, True, True), (True, False, False), (True, True, True)],
 )
 def test_what_may_be_form_error_has_to_be_removed_altogether(close, complete, needed):
-    search = searching(_better=lambda *_: True, _close=lambda _: close, complete=lambda _: complete)
-    assert search.needed(SimpleNamespace(), SLIP) is needed
+    search = searching(
+        _better=lambda *_: True, _close=lambda *_: close, complete=lambda _: complete
+    )
+    assert search.needed(SimpleNamespace(excess=0.0), SLIP) is needed
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,10 @@ from rr_opt.sysid.settings import SETTINGS
 RUNS = range(6)
 
 
-def candidate(*effects: str, elpd: float, given_up: bool = False) -> Any:
+def candidate(*effects: str, elpd: float, deviance: float = 0.0, given_up: bool = False) -> Any:
     """Recordings that are each predicted as well."""
     return SimpleNamespace(
+        fit=SimpleNamespace(deviance=deviance),
         choices=effects,
         effects=effects,
         elpd=elpd,
@@ -47,24 +48,28 @@ def contested(*lookalikes: Any) -> Contest:
     return search
 
 
-@pytest.mark.parametrize(("gain", "winner"), [(1.0, "cable"), (-1.0, "friction")])
-def test_the_better_one_wins(gain, winner):
-    wax = candidate("wax", elpd=9.0, given_up=True)
-    search = contested(candidate("cable", elpd=gain), wax)
-    assert search.best.effects == (winner,)
-    assert wax not in [one for one, _ in search.weighted]
-
-
-@pytest.mark.parametrize(("gain", "winner"), [(-1.0, ("cable",)), (-9.0, ("drag", "friction"))])
-def test_one_effect_is_better_than_two_that_predict_about_as_well(gain, winner):
-    search = Contest(candidate("cable", elpd=gain), answer=candidate("drag", "friction", elpd=0.0))
+@pytest.mark.parametrize(
+    ("gain", "deviance", "winner"),
+    [
+        *((9.0, 1.0, "cable"), (1.0, -1.0, "cable")),
+        *((1.0, 1.0, "friction"), (-1.0, -1.0, "friction"), (-9.0, -1.0, "friction")),
+    ],
+)
+@pytest.mark.parametrize("companions", [(), ("drag",)])
+def test_the_better_one_wins_and_if_it_is_hardly_better_only_the_likelier(
+    gain, deviance, winner, companions
+):
+    wax = candidate("wax", elpd=9.0, deviance=-9.0, given_up=True)
+    cable = candidate("cable", elpd=gain, deviance=deviance)
+    search = Contest(cable, wax, answer=candidate("friction", *companions, elpd=0.0))
     search._contest()
-    assert search.best.effects == winner
+    assert search.best.effects[0] == winner
+    assert wax not in [one for one, _ in search.weighted]
 
 
 @pytest.mark.parametrize("gain", [1.0, -1.0])
 def test_both_share_the_weight(gain):
-    search = contested(candidate("cable", elpd=gain))
+    search = contested(candidate("cable", elpd=gain, deviance=-gain))
     weights = {one.effects[0]: weight for one, weight in search.weighted}
     assert sum(weights.values()) == pytest.approx(1.0)
     assert 0.5 < weights[search.best.effects[0]] < 0.8

@@ -41,6 +41,31 @@ def test_nothing_is_left_of_a_right_model():
     assert max(one.gain - one.degrees for one in left({}, ())) < 20
 
 
+class Exact(RollerRacer):
+    form_error = 0.0  # pyright: ignore
+
+
+class Loose(RollerRacer):
+    form_error = 1.0  # pyright: ignore
+
+
+def test_what_machines_deviate_by_weighs_less():
+    experiment = with_effect(COULOMB, ("coulomb_friction",)).experiment
+    exact, loose = (model(experiment) for model in (Exact, Loose))
+    fit = base_of(exact).fit
+    terms = unknown_terms(exact, fit)
+    vaguer = replace(fit, problem=replace(fit.problem, model=loose))
+    own, other = (
+        next(d for d in dependences(one, *terms) if (d.channel, d.variable) == ("rolling", "speed"))
+        for one in (fit, vaguer)
+    )
+    problem = fit.problem
+    phi = np.mean([1 + n / problem.correlation_times(run) for run, n in problem.samples.items()])
+    assert other.gain == pytest.approx(own.gain / phi)
+    assert other.share == pytest.approx(own.share)
+    assert other.curve.error == pytest.approx(own.curve.error * np.sqrt(phi))
+
+
 @pytest.mark.parametrize(("more", "leads"), [(2.0, "constant"), (20.0, "phase")])
 def test_a_term_has_to_gain_more_than_its_functions_do_by_chance(more, leads):
     def one(variable, degrees, gain):

@@ -1,11 +1,8 @@
 """An effect that is put into the robot is the one that the search names."""
 
-from dataclasses import replace
-
 import pytest
 
 from rr_opt.model.gait import SineGait
-from rr_opt.sysid import selection
 from rr_opt.sysid.candidates import first
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.intervals import released, wrong
@@ -93,39 +90,6 @@ def test_a_search_with_less_noise_begins_anew():
     again = search.again([ChannelNoise(0.5)] * len(model.channels))
     assert again.base.fit.problem.model.runs[0].sigma == pytest.approx(model.runs[0].sigma / 2)
     assert again.base.fit.excess > search.base.fit.excess + 1
-
-
-def test_a_repeated_search_starts_from_the_earlier_fits(monkeypatch):
-    model = with_effect({}, ())
-    search = Selection(model, first(model, range(len(model.runs))))
-    tilt = (Choice("floor_tilt"),)
-    earlier = search.fitted(tilt, [{}]).fit
-    again, starts = search.again([ChannelNoise(0.5)] * len(model.channels)), []
-
-    def fitted(model, key, parent, guesses, rival):
-        starts.extend(guesses)
-        return earlier_candidate
-
-    earlier_candidate = search.tried[tilt]
-    monkeypatch.setattr(selection, "fitted", fitted)
-    again.fitted(tilt, [{"floor_tilt.tilt_x": 0.5}])
-    assert starts == [{q: earlier.values[q] for q in earlier.problem.names}]
-
-
-def test_but_not_from_one_that_was_given_up(monkeypatch):
-    model = with_effect({}, ())
-    search = Selection(model, first(model, range(len(model.runs))))
-    tilt, starts = (Choice("floor_tilt"),), []
-    search.tried[tilt] = replace(search.fitted(tilt, [{}]), given_up=True)
-    again = search.again([ChannelNoise(0.5)] * len(model.channels))
-
-    def fitted(model, key, parent, guesses, rival):
-        starts.extend(guesses)
-        return search.tried[tilt]
-
-    monkeypatch.setattr(selection, "fitted", fitted)
-    again.fitted(tilt, [{"floor_tilt.tilt_x": 0.5}])
-    assert starts == [{"floor_tilt.tilt_x": 0.5}]
 
 
 def test_slip_is_found_beside_an_effect_that_alone_explains_little():

@@ -14,7 +14,7 @@ from rr_opt.sysid import estimation
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.estimation import Fit, FitProblem
 from rr_opt.sysid.intervals import released, wrong
-from rr_opt.sysid.model import Choice, EffectInfo, Model, Quantity, Request, Segment
+from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment
 from rr_opt.sysid.settings import SETTINGS
 
 
@@ -33,6 +33,12 @@ class Candidate:
     def effects(self) -> tuple[str, ...]:
         """Their names."""
         return tuple(choice.name for choice in self.choices)
+
+    @property
+    def form_errors(self) -> Mapping[str, float]:
+        """The form error of each of its effects."""
+        catalogue = self.fit.problem.model.catalogue
+        return {name: catalogue[name].form_error for name in self.effects}
 
     @property
     def predictive(self) -> Mapping[int, float]:
@@ -54,15 +60,14 @@ class Candidate:
         """Misfit of whole-run simulations beyond the noise, RMS in sigma."""
         return self.simulated.excess
 
-    def plausible(self, base: Candidate, catalogue: Mapping[str, EffectInfo]) -> bool:
+    def plausible(self, base: Candidate) -> bool:
         """Whether recordings agree on its values, but for the form errors of its effects; and if it
         has none, no more values are wrong than may be. `base` has no effects."""
         if self.choices:
             explained = {
                 run: max(e.excess, 0.0) / e.samples for run, e in base.simulated.evidences.items()
             }
-            form_errors = {name: catalogue[name].form_error for name in self.effects}
-            agreed = constancy(self.fit, 0.0, explained, form_errors)
+            agreed = constancy(self.fit, 0.0, explained, self.form_errors)
             return agreed.probability > SETTINGS.named
         # Wrong values are released first: what is believed of one bends others.
         fit = released(self.fit)

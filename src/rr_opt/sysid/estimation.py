@@ -270,11 +270,15 @@ class FitProblem:
 
 @dataclass(frozen=True)
 class Linear:
-    """Linearised segments, so that trying other strengths of process noise is cheap."""
+    """Linearised segments, so that trying other strengths of process noise, or priors, is cheap.
+
+    made, parts  each segment simulated, and linearised in the quantities and perhaps in further
+                 columns after these
+    """
 
     problem: FitProblem
     made: Mapping[Segment, Simulation]
-    parts: Mapping[Segment, tuple[Array, Array]]
+    parts: Mapping[Segment, Linearisation]
     states: States
 
     @classmethod
@@ -282,21 +286,7 @@ class Linear:
         """Linearise at a point that was simulated."""
         requests = problem.requests(values, states)
         every = problem.model.linearise(requests, problem.effects, problem.names)
-        return cls.scaled(problem, dict(zip(problem.segments, every, strict=True)), states, made)
-
-    @classmethod
-    def scaled(
-        cls, problem: FitProblem, every: Mapping[Segment, Linearisation], states: States, made
-    ) -> Linear:
-        """Of segments linearised in the quantities, and perhaps in further columns after these."""
-        size, nq = next(iter(states.values())).size, len(problem.names)
-        scale = np.ones(len(next(iter(every.values())).gram))
-        scale[size : size + nq] = problem.scale
-        parts = {
-            one: (linear.gram * scale * scale[:, None], linear.end * scale[:-1])
-            for one, linear in every.items()
-        }
-        return cls(problem, made, parts, states)
+        return cls(problem, made, dict(zip(problem.segments, every, strict=True)), states)
 
     def evidences(self, q: float) -> dict[int, Evidence]:
         """Evidences of all runs with process noise of strength q."""
@@ -382,10 +372,12 @@ class Linear:
         derivatives of all ends but the last; initial states; gaps between each end and the next
         initial state."""
         out, prior = {}, self.problem.model.state_prior(self.problem.effects) ** -2
+        size, scale = prior.size, np.ones(len(next(iter(self.parts.values())).gram))
+        scale[size : size + len(self.problem.names)] = self.problem.scale
         for run, parts in self.problem.by_run.items():
             states = np.array([self.states[one] for one in parts])
-            grams = np.array([self.parts[one][0] for one in parts])
-            size, pull = prior.size, prior * states[0]
+            grams = np.array([self.parts[one].gram for one in parts]) * scale * scale[:, None]
+            pull = prior * states[0]
             grams[0, :size, :size] += np.diag(prior)
             grams[0, :size, -1] += pull
             grams[0, -1, :size] += pull
@@ -393,7 +385,7 @@ class Linear:
             ends = np.array([self.made[one].end for one in parts[:-1]]).reshape(-1, states.shape[1])
             out[run] = (
                 grams,
-                np.array([self.parts[one][1] for one in parts])[:-1],
+                np.array([self.parts[one].end for one in parts])[:-1] * scale[:-1],
                 states,
                 ends - states[1:],
             )
@@ -520,7 +512,8 @@ def solve(
     tolerance  expected gain, in nats, below which a fit has converged
     relative   the same, as a share of the misfit beyond the noise
     enough     deviance to reach; a fit that is too slow to get there is given up
-    known      linearisation at the start, of this problem or of one with other process noise
+    known      linearisation at the start, of this problem or of one with other process noise or
+               priors
     """
     low, high = problem.box
     u = np.clip(problem.scaled(values), low, high)
@@ -626,7 +619,7 @@ def _stepped(
     """A better point, None if less than `least` is to be gained or no step gains; the gain expected
     of the step to it; and how far the linearisation is trusted next, in scaled quantities.
 
-    In runs that a step makes worse, the states take only a share of the next one.
+    In runs that a step makes worse, the states take only a share of it.
     """
     problem, expected = linear.problem, 0.0
     shares = dict.fromkeys(problem.by_run, 1.0)
@@ -645,9 +638,11 @@ def _stepped(
             if not astray:
                 break
             part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))
-            fewer = shares | {run: less * shares[run] for run in astray}
-            states = linear.moved(evidences, d, fewer)
+            shares |= dict.fromkeys(astray, less)
+            states = linear.moved(evidences, d, shares)
             after = after.joined(_Point.of(part, here.u + d, states))
+            losses = _expected(evidences, here, d, shares)
+            expected = here.cost - _cost(problem, here.u + d, losses)
         gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
         if gain > 0:
             if gain < 0.25 * expected:
@@ -705,6 +700,7 @@ def fitted(
     states: States,
     enough: float = math.inf,
     tolerance: float = SETTINGS.tolerance,
+    known: Linear | None = None,
 ) -> Fit:
     """The problem's solution with the most likely process noise.
 
@@ -712,11 +708,12 @@ def fitted(
     rise, and does.
 
     enough  deviance to reach; a fit that will not get there is stopped early
+    known   linearisation at the start, as `solve` takes it
     """
     if all(len(parts) == 1 for parts in problem.by_run.values()):
-        return solve(problem, values, states, tolerance=tolerance)
+        return solve(problem, values, states, tolerance=tolerance, known=known)
     steps = SETTINGS.steps
-    fit = solve(problem, values, states, SETTINGS.first_steps, tolerance)
+    fit = solve(problem, values, states, SETTINGS.first_steps, tolerance, known=known)
     for _ in range(3):
         q = most_likely(fit)
         if q == fit.problem.q and fit.converged:

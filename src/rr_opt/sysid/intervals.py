@@ -147,4 +147,5 @@ def _with(fit: Fit, quantity: Quantity) -> Fit:
     """The fit with another prior of a quantity."""
     every = fit.problem.quantities
     quantities = tuple(quantity if q.name == quantity.name else q for q in every)
-    return fitted(replace(fit.problem, quantities=quantities), fit.values, fit.states)
+    problem = replace(fit.problem, quantities=quantities)
+    return fitted(problem, fit.values, fit.states, known=fit.linear)

@@ -10,14 +10,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import chdtrc, chdtri
 
-from rr_opt.array import Array
+from rr_opt.sysid.constancy import overdispersion
 from rr_opt.sysid.diagnosis import Curve, Residue, Stage
-from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum
+from rr_opt.sysid.estimation import Fit, Linear
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Segment
+from rr_opt.sysid.score_test import ScoreTest
 from rr_opt.sysid.settings import SETTINGS
 
 
@@ -65,40 +65,25 @@ class Dependence:
 def dependences(
     fit: Fit, terms: Sequence[Term], parts: Mapping[Segment, Linearisation]
 ) -> list[Dependence]:
-    """What each term explains of the fit's residual; most first."""
+    """What each term explains of the fit's residual, beyond what machines of this kind may deviate
+    from any model; most first."""
     if not terms:
         return []
-    problem = fit.problem
-    nq = len(problem.names)
-    evidences = Linear.scaled(problem, parts, fit.states, fit.linear.made).evidences(problem.q)
-    columns = next(iter(evidences.values())).g.size - nq
-    prior = np.append(problem.prior, np.full(columns, SETTINGS.effect_prior**-2))
-    H = np.diag(prior) + sum(e.H for e in evidences.values())
-    g = prior * np.append(fit.u, np.zeros(columns)) + sum(e.g for e in evidences.values())
-    plain = np.arange(nq, dtype=np.intp)
+    nq = len(fit.problem.names)
+    # Bounded: a gain that takes a quantity beyond its bounds does not count as explained.
+    test = ScoreTest.of(Linear(fit.problem, fit.linear.made, parts, fit.states), fit.values, nq)
     beyond = max(sum(e.value - e.samples for e in fit.evidences.values()), 1.0)
-    low, high = (
-        np.append(end - fit.u, np.full(columns, far))
-        for end, far in zip(problem.box, (-np.inf, np.inf), strict=True)
-    )
-
-    def best(keep: NDArray[np.intp]) -> tuple[float, Array]:
-        # Bounded: a gain that takes a quantity beyond its bounds does not count as explained.
-        own = H[np.ix_(keep, keep)]
-        d = bounded_minimum(own, g[keep], low[keep], high[keep])
-        return -float(2 * g[keep] @ d + d @ own @ d), d
-
-    base = best(plain)[0] if nq else 0.0
+    form_error = fit.problem.model.form_error
+    phi = float(np.mean([overdispersion(fit.problem, k, form_error**2) for k in fit.evidences]))
     out = []
     for term in terms:
-        keep = np.append(plain, nq + np.array(term.columns)).astype(np.intp)
-        inverse = np.linalg.inv(H[np.ix_(keep, keep)])
-        gain, d = best(keep)
-        gain -= base
+        own = [nq + k for k in term.columns]
+        gain, _, d = test.gain(own)
+        inverse = np.linalg.inv(test.H[np.ix_(test.keep(own), test.keep(own))])
         spread = np.einsum("ki,ij,kj->k", term.shapes, inverse[nq:, nq:], term.shapes)
-        error = np.sqrt(np.maximum(spread, 0.0))
-        curve = Curve(term.variable, term.unit, term.at, term.shapes @ d[nq:], error)
-        out.append(Dependence(term, gain, float(np.clip(gain / beyond, 0, 1)), curve))
+        error = np.sqrt(phi * np.maximum(spread, 0.0))
+        curve = Curve(term.variable, term.unit, term.at, term.shapes @ d[own], error)
+        out.append(Dependence(term, gain / phi, float(np.clip(gain / beyond, 0, 1)), curve))
     return sorted(out, key=_lead, reverse=True)
 
 

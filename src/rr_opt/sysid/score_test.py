@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.array import Array
-from rr_opt.sysid.estimation import Fit, FitProblem, Linear, States, bounded_minimum, root, summed
-from rr_opt.sysid.model import Choice, Linearisation, Quantity, Request, Segment, Simulation
+from rr_opt.array import Array, Indices
+from rr_opt.sysid.estimation import Fit, FitProblem, Linear, bounded_minimum, root
+from rr_opt.sysid.model import Choice, Linearisation, Request, Segment
 from rr_opt.sysid.settings import SETTINGS
 
 
@@ -65,7 +65,7 @@ def scores(fit: Fit, most: int) -> list[Score]:
     wide = replace(problem, effects=effects, quantities=quantities)
     requests = wide.requests(values, states)
     made = dict(zip(wide.segments, model.simulate(requests, effects), strict=True))
-    test = _Test.of(Linear.of(wide, values, states, made), values, len(problem.quantities))
+    test = ScoreTest.of(Linear.of(wide, values, states, made), values, len(problem.quantities))
     where = {q.name: k for k, q in enumerate(quantities)}
     out = []
     for size in (1, 2)[:most]:
@@ -73,67 +73,76 @@ def scores(fit: Fit, most: int) -> list[Score]:
             if len({one.name for one in these}) < size:
                 continue
             some = {name: q for one in these for name, q in own[one].items()}
-            gain, d = test.gain([where[q.name] for q in some.values()])
+            gain, occam, d = test.gain([where[q.name] for q in some.values()])
             if all(any(d[where[q.name]] for q in own[one].values()) for one in these):
                 guess = {name: q.neutral + d[where[q.name]] * q.scale for name, q in some.items()}
-                out.append(Score(tuple(sorted(these)), gain, guess))
+                out.append(Score(tuple(sorted(these)), gain - occam, guess))
     return sorted(out, key=lambda score: -score.gain)
 
 
-def secants(
-    problem: FitProblem,
-    values: Mapping[str, float],
-    states: States,
-    made: Mapping[Segment, Simulation],
-    every: Mapping[Segment, Linearisation],
-) -> list[float]:
+def secants(fit: Fit, problem: FitProblem, parts: Mapping[Segment, Linearisation]) -> list[float]:
     """What a share of each finite change of a prediction would gain, as a score: a derivative says
     nothing of effects that set in suddenly.
 
-    every  the segments linearised in the quantities and then in the changes
+    problem  the fit's, or a part of it
+    parts    its segments linearised in the quantities and then in the changes
     """
-    fitted, size = len(problem.quantities), next(iter(states.values())).size
-    count = next(iter(every.values())).end.shape[1] - size - fitted
-    shares = tuple(
-        Quantity(f"share {k}", "", 0.0, 1.0, False, 0.0, SETTINGS.largest_share, 0.0)
-        for k in range(count)
-    )
-    wide = replace(problem, quantities=(*problem.quantities, *shares))
-    values = {**values, **{q.name: 0.0 for q in shares}}
-    test = _Test.of(Linear.scaled(wide, every, states, made), values, fitted)
-    return [test.gain([fitted + k])[0] for k in range(count)]
+    linear, fitted = Linear(problem, fit.linear.made, parts, fit.states), len(problem.names)
+    test = ScoreTest.of(linear, fit.values, fitted, (0.0, SETTINGS.largest_share))
+    gains = (test.gain([k]) for k in range(fitted, test.g.size))
+    return [gain - occam for gain, occam, _ in gains]
 
 
 @dataclass(frozen=True)
-class _Test:
+class ScoreTest:
+    """The loss value + 2 g'd + d'Hd of a linearised problem, and of further columns.
+
+    low, high  bounds of d;  prior  precisions;  fitted  how many are in the fit
+    """
+
     H: Array
     g: Array
-    u: Array
-    box: tuple[Array, Array]
-    fitted: int
+    low: Array
+    high: Array
     prior: Array
+    fitted: int
 
     @classmethod
-    def of(cls, linear: Linear, values: Mapping[str, float], fitted: int) -> _Test:
-        """Of what comes after the first `fitted` quantities of a linearised problem."""
-        problem = linear.problem
+    def of(
+        cls,
+        linear: Linear,
+        values: Mapping[str, float],
+        fitted: int,
+        bounds: tuple[float, float] = (-np.inf, np.inf),
+    ) -> ScoreTest:
+        """At these values; `bounds` are those of columns beyond the quantities."""
+        problem, every = linear.problem, linear.evidences(linear.problem.q).values()
+        columns = np.zeros(next(iter(every)).g.size - len(problem.names))
         u = problem.scaled(values)
-        H, g, _ = summed(problem, linear.evidences(problem.q), u)
-        return cls(H, g, u, problem.box, fitted, problem.prior)
+        prior = np.append(problem.prior, columns + SETTINGS.effect_prior**-2)
+        g = prior * np.append(u, columns) + sum(e.g for e in every)
+        H = np.diag(prior) + sum(e.H for e in every)
+        low, high = (
+            np.append(end - u, columns + far) for end, far in zip(problem.box, bounds, strict=True)
+        )
+        return cls(H, g, low, high, prior, fitted)
 
-    def gain(self, own: Sequence[int]) -> tuple[float, Array]:
-        """Gain in -2 log marginal likelihood of some further columns, and the step."""
-        (before, _), (after, d) = self._lowered([]), self._lowered(own)
-        return after - before, d
+    def keep(self, own: Sequence[int]) -> Indices:
+        """What is in the fit, and these."""
+        return np.array([*range(self.fitted), *own], np.int64)
 
-    def _lowered(self, own: Sequence[int]) -> tuple[float, Array]:
-        keep = np.array([*range(self.fitted), *own], int)
-        d = np.zeros(self.u.size)
+    def gain(self, own: Sequence[int]) -> tuple[float, float, Array]:
+        """Gain in -2 log likelihood if these are fitted too, within the bounds; the Occam penalty;
+        and the step d."""
+        (before, less, _), (after, more, d) = self._lowered([]), self._lowered(own)
+        return after - before, more - less, d
+
+    def _lowered(self, own: Sequence[int]) -> tuple[float, float, Array]:
+        keep, d = self.keep(own), np.zeros(self.g.size)
         if not keep.size:
-            return 0.0, d
-        H, g = self.H[np.ix_(keep, keep)], self.g[keep]
-        low, high = (end[keep] - self.u[keep] for end in self.box)
-        d[keep] = bounded_minimum(H, g, low, high)
+            return 0.0, 0.0, d
+        H = self.H[np.ix_(keep, keep)]
+        d[keep] = bounded_minimum(H, self.g[keep], self.low[keep], self.high[keep])
         lowered = -float(2 * self.g @ d + d @ self.H @ d)
         log = 2 * float(np.sum(np.log(np.diag(root(H)))))
-        return lowered - log + float(np.sum(np.log(self.prior[keep]))), d
+        return lowered, log - float(np.sum(np.log(self.prior[keep]))), d

@@ -13,7 +13,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 
 from rr_opt.formatting import words_of
 from rr_opt.sysid.candidates import Candidate, first, fitted, quantities_of, weights
@@ -42,7 +41,6 @@ class Selection:
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     lookalikes: Sequence[Candidate] = ()
-    _earlier: Mapping[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
     _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
     _plausibles: dict[Candidate, bool] = field(default_factory=dict)
@@ -52,16 +50,9 @@ class Selection:
         self.best = self.tried[()] = self.base
 
     @classmethod
-    def begun(
-        cls,
-        model: MachineModel,
-        base: Candidate,
-        progress: Progress,
-        earlier: Mapping[tuple[Choice, ...], Candidate] = MappingProxyType({}),
-    ) -> Selection:
-        """A search that has begun with the effects of the drive; fits start from those of an
-        earlier search."""
-        selection = cls(model, base, progress, _earlier=earlier)
+    def begun(cls, model: MachineModel, base: Candidate, progress: Progress) -> Selection:
+        """A search that has begun with the effects of the drive."""
+        selection = cls(model, base, progress)
         if not selection.insignificant(base):
             model.prepare([with_all(base.fit)])
         selection.drive()
@@ -71,7 +62,7 @@ class Selection:
         """Start over with other noise."""
         model = self.model.with_noise(noise)
         base = first(model, self.base.fit.problem.by_run)
-        return self.begun(model, base, self.progress, self.tried)
+        return self.begun(model, base, self.progress)
 
     def run(self) -> Candidate:
         """Run the search; returns the chosen candidate."""
@@ -100,7 +91,7 @@ class Selection:
         """Whether the fitted recordings agree on its values: where they do not, something else is
         missing, and they may show what."""
         if candidate not in self._plausibles:
-            self._plausibles[candidate] = candidate.plausible(self.base, self.model.catalogue)
+            self._plausibles[candidate] = candidate.plausible(self.base)
         return self._plausibles[candidate]
 
     def insignificant(self, candidate: Candidate) -> bool:
@@ -140,16 +131,17 @@ class Selection:
         return not held or predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also leaves nothing, if what the other leaves is within the form error of its
-        effects."""
+        """Whether it also leaves nothing, if what the other misses more is within the form error of
+        that one's effects."""
         return self._better(candidate, other) and (
-            not self._close(other) or self.complete(candidate)
+            not self._close(other, candidate.excess) or self.complete(candidate)
         )
 
-    def _close(self, candidate: Candidate) -> bool:
-        """Whether it has effects, and its misfit is within their form error."""
-        form_errors = [self.model.catalogue[name].form_error for name in candidate.effects]
-        return bool(form_errors) and candidate.excess <= max(form_errors) * self.base.excess
+    def _close(self, candidate: Candidate, left: float = 0.0) -> bool:
+        """Whether it has effects, and its misfit, beyond what is left by another, is within their
+        form error."""
+        errors, beyond = candidate.form_errors.values(), candidate.excess**2 - left**2
+        return bool(errors) and beyond <= (max(errors) * self.base.excess) ** 2
 
     def fitted(
         self,
@@ -163,10 +155,6 @@ class Selection:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
             rival = min((one.fit for one in self.tried.values()), key=lambda fit: fit.deviance)
             begun, nested = [*guesses], self._nested(key)
-            earlier = self._earlier.get(key)
-            if earlier and not earlier.given_up:
-                fit = earlier.fit
-                begun = [{q: fit.values[q] for q in fit.problem.names}]
             if nested:
                 known = {q: nested.fit.values[q] for q in nested.fit.problem.names}
                 begun.append({**self._sudden_values(begun), **known})
@@ -300,7 +288,7 @@ class Selection:
 
     def _contest(self) -> None:
         """Try the lookalikes of the answer's effects in their place: an effect imitates the one
-        that predicts better, or as well with fewer companions."""
+        that predicts better."""
         if self.best is self._contested:
             return
         best, every = self.best, [*self._lookalikes()]
@@ -314,9 +302,10 @@ class Selection:
 
     @staticmethod
     def _beats(one: Candidate, best: Candidate) -> bool:
-        """Whether a lookalike predicts better, or about as well with fewer effects."""
-        fewer = len(one.choices) < len(best.choices) and not best.predicts_better(one)
-        return not one.given_up and (fewer or one.elpd > best.elpd)
+        """Whether a lookalike predicts better: certainly, or a little, and is likelier."""
+        likelier = one.fit.deviance < best.fit.deviance
+        better = one.predicts_better(best) or (one.elpd > best.elpd and likelier)
+        return better and not one.given_up
 
     def _lookalikes(self) -> Iterator[Candidate]:
         """Each in the place of its effect, and of that and one more."""

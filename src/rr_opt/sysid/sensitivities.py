@@ -212,27 +212,13 @@ def grams(system: System, asked: Sequence[Sought]) -> list[tuple[Array, Array]]:
     return code.grams(asked) if code else [_gram(system, a) for a in asked]
 
 
-def gram_of(*columns: Array) -> Array:
-    """J'J of columns (samples, k) side by side."""
-    J = np.column_stack(columns)
-    return J.T @ J
-
-
 def _gram(system: System, one: Sought) -> tuple[Array, Array]:
     by = slopes(system, one.path, one.made, one.p, one.wanted, one.drive_by)
     off = one.made.seen - one.recorded.values
     weight = np.where(np.isfinite(off), one.recorded.weight, 0.0)
-    parts = [
-        by.by_start,
-        by.by_parameter,
-        *([] if one.more is None else [one.more]),
-        off[..., None],
-    ]
-    known = weight[:, :, None] > 0
-    gram = gram_of(
-        *(
-            np.where(known, part, 0.0).reshape(weight.size, -1) * weight.reshape(-1, 1)
-            for part in parts
-        )
-    )
-    return gram, by.end
+    more = [] if one.more is None else [one.more]
+    J = np.concatenate([by.by_start, by.by_parameter, *more, off[..., None]], axis=2)
+    # Weights of 0 do not remove what is not finite.
+    J = np.where(weight[..., None] > 0, J, 0.0) * weight[..., None]
+    J = J.reshape(-1, J.shape[2])
+    return J.T @ J, by.end

@@ -175,14 +175,9 @@ class Identification:
         return float(expit(odds))
 
     @property
-    def _form_errors(self) -> Mapping[str, float]:
-        catalogue = self.selection.model.catalogue
-        return {name: catalogue[name].form_error for name in self.best.effects}
-
-    @property
     def _form_error(self) -> float:
-        """The largest of them; inf without an effect."""
-        return max(self._form_errors.values(), default=math.inf)
+        """The largest form error of its effects; inf without any."""
+        return max(self.best.form_errors.values(), default=math.inf)
 
     @cached_property
     def _explained(self) -> Mapping[int, float]:
@@ -194,7 +189,7 @@ class Identification:
         """How well recordings agree on the answer's values."""
         # With effects, their own form errors count instead.
         left = 0.0 if self.best.choices else self.everywhere.excess
-        return constancy(self.everywhere.fit, left, self._explained, self._form_errors)
+        return constancy(self.everywhere.fit, left, self._explained, self.best.form_errors)
 
     @cached_property
     def estimates(self) -> Mapping[str, Estimate]:

@@ -106,4 +106,4 @@ def _gains(racer: RacerModel, fit: Fit, guesses: Sequence[Mapping[str, float]]) 
     ]
     parts = simulator.linearise(requests, fit.effects, problem.names, changes)
     every = dict(zip(problem.segments, parts, strict=True))
-    return secants(problem, fit.values, fit.states, fit.linear.made, every)
+    return secants(fit, problem, every)
