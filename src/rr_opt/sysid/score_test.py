@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -134,8 +135,12 @@ class ScoreTest:
     def gain(self, own: Sequence[int]) -> tuple[float, float, Array]:
         """Gain in -2 log likelihood if these are fitted too, within the bounds; the Occam penalty;
         and the step d."""
-        (before, less, _), (after, more, d) = self._lowered([]), self._lowered(own)
+        (before, less, _), (after, more, d) = self._fit, self._lowered(own)
         return after - before, more - less, d
+
+    @cached_property
+    def _fit(self) -> tuple[float, float, Array]:
+        return self._lowered([])
 
     def _lowered(self, own: Sequence[int]) -> tuple[float, float, Array]:
         keep, d = self.keep(own), np.zeros(self.g.size)
