@@ -58,10 +58,15 @@ def shorter(drive, samples):
 
 
 @needs_compiler
-@pytest.mark.parametrize("worth", [0, 10**9], ids=["in threads", "one after the other"])
+@pytest.mark.parametrize(
+    ("worth", "large"),
+    [(0, 10**9), (10**9, 0)],
+    ids=["in threads", "one after the other, hardly optimised"],
+)
 @pytest.mark.parametrize("name", CASES)
-def test_the_same_numbers(name, worth, monkeypatch, own_cache):
+def test_the_same_numbers(name, worth, large, monkeypatch, own_cache):
     monkeypatch.setattr(compiled, "_WORTH", worth)
+    monkeypatch.setattr(compiled, "_LARGE", large)
     system, drive, start, p, _ = CASES[name]
     p = values_of(BENCHMARK, floor_motion().parameters) if p is None else np.array(p)
     # More runs than there are lanes, of different lengths.

@@ -26,6 +26,10 @@ _FLAGS = (
     *("-ffp-contract=fast", "-fPIC", "-shared"),
 )
 
+_LARGE, _EASY = 1_000_000, '#pragma GCC optimize ("Og")\n'
+"""Characters of C beyond which optimising takes longer than it saves: allocating registers for
+30,000 assignments in a row takes ten seconds, for a system that a diagnosis uses a few times."""
+
 _WORTH = 100
 """Steps below which starting a thread takes longer than the work itself."""
 
@@ -260,7 +264,8 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
     defines = [f"#define {name} {number}\n" for name, number in head.items()]
     lanes = source_file("rr_opt.mechanics", "lanes.c")
     loops = source_file("rr_opt.sysid", "diagnose_lanes.c")
-    return "".join([*defines, lanes, *(part.source for part in parts), *tables, loops])
+    text = "".join([*defines, lanes, *(part.source for part in parts), *tables, loops])
+    return _EASY + text if len(text) > _LARGE else text
 
 
 def transition(by_state: ca.SX, h: ca.SX, *, stiff: bool) -> tuple[ca.SX, ca.SX]:
