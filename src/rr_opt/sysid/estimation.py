@@ -638,11 +638,9 @@ def _stepped(
             if not astray:
                 break
             part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))
-            shares |= dict.fromkeys(astray, less)
-            states = linear.moved(evidences, d, shares)
+            fewer = shares | {run: less * shares[run] for run in astray}
+            states = linear.moved(evidences, d, fewer)
             after = after.joined(_Point.of(part, here.u + d, states))
-            losses = _expected(evidences, here, d, shares)
-            expected = here.cost - _cost(problem, here.u + d, losses)
         gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
         if gain > 0:
             if gain < 0.25 * expected:

@@ -131,17 +131,17 @@ class Selection:
         return not held or predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also leaves nothing, if what the other misses more is within the form error of
-        that one's effects."""
+        """Whether it also leaves nothing, if what the other misses more may be the form error of
+        that one's effects, at a level of 95 %."""
         return self._better(candidate, other) and (
-            not self._close(other, candidate.excess) or self.complete(candidate)
+            not self._close(other, candidate.excess, 2.0) or self.complete(candidate)
         )
 
-    def _close(self, candidate: Candidate, left: float = 0.0) -> bool:
-        """Whether it has effects, and its misfit, beyond what is left by another, is within their
-        form error."""
+    def _close(self, candidate: Candidate, left: float = 0.0, sigmas: float = 1.0) -> bool:
+        """Whether it has effects, and its misfit, beyond what is left by another, is within so many
+        of their form errors."""
         errors, beyond = candidate.form_errors.values(), candidate.excess**2 - left**2
-        return bool(errors) and beyond <= (max(errors) * self.base.excess) ** 2
+        return bool(errors) and beyond <= (sigmas * max(errors) * self.base.excess) ** 2
 
     def fitted(
         self,
