@@ -60,7 +60,13 @@ def test_what_machines_deviate_by_weighs_less():
         for one in (fit, vaguer)
     )
     problem = fit.problem
-    phi = np.mean([1 + n / problem.correlation_times(run) for run, n in problem.samples.items()])
+    times = {run: problem.correlation_times(run) for run in problem.samples}
+    ratios = [
+        (1 + n / times[run]) / (1 + max(fit.evidences[run].excess, 0) / times[run])
+        for run, n in problem.samples.items()
+    ]
+    phi = np.mean(np.maximum(ratios, 1))
+    assert phi > 1
     assert other.gain == pytest.approx(own.gain / phi)
     assert other.share == pytest.approx(own.share)
     assert other.curve.error == pytest.approx(own.curve.error * np.sqrt(phi))

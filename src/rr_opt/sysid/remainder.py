@@ -73,8 +73,13 @@ def dependences(
     # Bounded: a gain that takes a quantity beyond its bounds does not count as explained.
     test = ScoreTest.of(Linear(fit.problem, fit.linear.made, parts, fit.states), fit.values, nq)
     beyond = max(sum(e.value - e.samples for e in fit.evidences.values()), 1.0)
-    form_error = fit.problem.model.form_error
-    phi = float(np.mean([overdispersion(fit.problem, k, form_error**2) for k in fit.evidences]))
+    # Beyond the misfit that there is, which the robust loss allows for.
+    problem, form_error = fit.problem, fit.problem.model.form_error
+    allowed = {
+        k: 1 + max(e.excess, 0) / problem.correlation_times(k) for k, e in fit.evidences.items()
+    }
+    ratios = [overdispersion(problem, k, form_error**2) / phi for k, phi in allowed.items()]
+    phi = float(np.mean(np.maximum(ratios, 1.0)))
     out = []
     for term in terms:
         own = [nq + k for k in term.columns]
