@@ -132,9 +132,9 @@ class Selection:
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether it also leaves nothing, if what the other misses more may be the form error of
-        that one's effects, at a level of 95 %."""
+        that one's effects."""
         return self._better(candidate, other) and (
-            not self._close(other, candidate.excess, 2.0) or self.complete(candidate)
+            not self._close(other, candidate.excess, SETTINGS.removed) or self.complete(candidate)
         )
 
     def _close(self, candidate: Candidate, left: float = 0.0, sigmas: float = 1.0) -> bool:

@@ -39,6 +39,8 @@ class Settings:
                           imitate anything
     form_errors           multiples of an effect's form error at which a remainder is as likely an
                           imitation's as a machine's
+    removed               multiples of the other effects' form error that a further effect has to
+                          remove to be kept, unless nothing is left with it: a level of 95 %
     misstated             relative deviation from the stated noise level that contradicts it
     correlated            samples per independent sample beyond which noise is not white by chance
     certain               p-value below which an unknown input is significant
@@ -97,6 +99,7 @@ class Settings:
     inconstant: float = 100.0
     further: float = 0.25
     form_errors: float = 6.0
+    removed: float = 2.0
     misstated: float = 0.1
     correlated: float = 1.5
     certain: float = 1e-6
