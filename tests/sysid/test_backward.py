@@ -1,13 +1,11 @@
 """Backward steps: what two effects account for together is not lost by dropping one at a time."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from rr_opt.sysid import selection
-from rr_opt.sysid.model import Choice
 from rr_opt.sysid.selection import Selection
 
 
@@ -67,19 +65,6 @@ def test_an_effect_is_dropped_before_another_is_simplified():
     assert selection.best.choices == ("a",)
 
 
-def test_a_simpler_form_that_was_given_up_is_fitted_before_it_counts_as_worse(monkeypatch):
-    fuller, simpler = Choice("patch", 2), Choice("patch", 1)
-    given_up = Made((simpler,), 9.0, given_up=True)
-    whole, ended = Made((fuller,), 6.0), Made((simpler,), 6.1)
-    search: Any = Selection.__new__(Selection)
-    search.tried = {(simpler,): given_up}
-    search.model = SimpleNamespace()
-    monkeypatch.setattr(Selection, "_forms", lambda *_, fuller: iter([(1, set())]))
-    monkeypatch.setattr(selection, "fitted", lambda *_: ended)
-    assert [*search._simpler(whole)] == [ended]
-    assert search.tried == {(simpler,): ended}
-
-
 class Near(Selection):
     """One effect leaves 7.5 % of the first misfit (RMS)."""
 
@@ -103,10 +88,7 @@ class Near(Selection):
 
     def _backward(self, needed) -> None: ...
 
-    _refine = _substitute = _contest = lambda _: None
-
-    def _simplest(self) -> Any:
-        return self.best
+    def _contest(self) -> None: ...
 
 
 @pytest.mark.parametrize(
@@ -129,17 +111,6 @@ def test_a_second_effect_is_needed_if_it_removes_more_than_machines_differ_by(le
     assert selection.needed(both, selection.best) == kept
 
 
-def test_an_effect_of_the_drive_in_another_form_is_substituted_not_added(monkeypatch):
-    alone, both = (Choice("play"),), (Choice("lag"), Choice("play"))
-    search: Any = Selection.__new__(Selection)
-    search.best = Made((Choice("floor"), Choice("play", 1)), 6.0)
-    search._upstream = [(alone, {}), (both, {})]
-    asked = []
-    monkeypatch.setattr(Selection, "_asked", lambda _, key, *__: asked.append(key) or search.best)
-    search._substitute()
-    assert asked == [(Choice("floor"), *alone), (Choice("floor"), *both)]
-
-
 def test_what_the_motion_does_not_show_goes_before_more_is_sought():
     class Looking(Dropping):
         def _enough(self, candidate) -> bool:
@@ -156,17 +127,3 @@ def test_what_the_motion_does_not_show_goes_before_more_is_sought():
 
     with pytest.raises(LookupError, match=r"\('a',\)"):
         Looking().run()
-
-
-def test_a_part_that_is_enough_is_taken_to_its_end(monkeypatch):
-    """It need not predict as well as the whole, by which it was given up."""
-
-    class GivingUp(Dropping):
-        def _fewer(self, candidate) -> Any:
-            return (replace(one, given_up=True) for one in super()._fewer(candidate))
-
-    selection = GivingUp()
-    selection.tried, selection.model = {}, None  # pyright: ignore
-    monkeypatch.setattr("rr_opt.sysid.selection.fitted", lambda _, key, *__: MADE[key])
-    selection._backward(lambda _, part: part.excess > 7.6)
-    assert selection.best == selection.tried[("a",)] == MADE[("a",)]  # pyright: ignore

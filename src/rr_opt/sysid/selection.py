@@ -41,7 +41,6 @@ class Selection:
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     lookalikes: Sequence[Candidate] = ()
-    _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
     _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
     _plausibles: dict[Candidate, bool] = field(default_factory=dict)
     _contested: Candidate | None = None
@@ -76,10 +75,7 @@ class Selection:
             self._backward(self._better)
             if self.insignificant(self.best) and not self._enough(self.best):
                 self._contest()
-        self._refine()
-        self._substitute()
         self._backward(self.needed)
-        self.best = self._simplest()
         self._contest()
         return self.best
 
@@ -157,16 +153,9 @@ class Selection:
             begun, nested = [*guesses], self._nested(key)
             if nested:
                 known = {q: nested.fit.values[q] for q in nested.fit.problem.names}
-                begun.append({**self._sudden_values(begun), **known})
+                begun.append({**guesses[0], **known})
             self.tried[key] = fitted(self.model, key, (parent or self.best).fit, begun, rival)
         return self.tried[key]
-
-    def _sudden_values(self, guesses: Sequence[Mapping[str, float]]) -> Mapping[str, float]:
-        """Of the first guess, the values of effects that are not smooth: from where such an effect
-        vanishes a fit hardly moves."""
-        sudden = {name for name, info in self.model.catalogue.items() if not info.smooth}
-        every = guesses[0] if guesses else {}
-        return {q: value for q, value in every.items() if q.partition(".")[0] in sudden}
 
     def _nested(self, key: Sequence[Choice]) -> Candidate | None:
         """The best candidate that is nested in this one, which therefore fits no worse."""
@@ -179,8 +168,9 @@ class Selection:
     def drive(self) -> None:
         """Try effects of the drive, from its own recording."""
         self.progress("testing the actuation")
-        self._upstream = [one for one in self.model.upstream() if one[0]]
-        for choices, values in self._upstream:
+        for choices, values in self.model.upstream():
+            if not choices:
+                continue
             one = self.fitted(choices, [values], self.base)
             if one.predicts_better(self.best) and len(one.choices) >= len(self.best.choices):
                 self.best = one
@@ -191,13 +181,12 @@ class Selection:
         self.progress("testing candidate effects")
         promising = self._promising()
         found = [*self._scored(promising, 1)]
-        alone = _best(found)
         if not self._settled(found):
             found += self._extended()
         if not self._settled(found):
             self.progress("searching for effects without derivatives")
             found += self._proposed()
-        if not (alone and self.complete(alone)) and not self._settled(found):
+        if not self._settled(found):
             found += self._scored(promising, 2)
         step = _best(found)
         if step and step.predicts_better(self.best):
@@ -264,27 +253,18 @@ class Selection:
     def _asked(
         self, choices: Sequence[Choice], guesses: Sequence[Mapping[str, float]], parent: Candidate
     ) -> Candidate:
-        """The candidate with these effects; if it was fitted before, from these guesses too."""
+        """The candidate with these effects; if it was fitted before, the better of that and of one
+        from another parent's values and these guesses."""
         key = tuple(sorted(choices))
-        if key in self.tried:
-            return self._again(self.tried[key], parent, guesses)
-        self._compared.add((parent, key))
-        return self.fitted(key, guesses, parent)
-
-    def _refine(self) -> None:
-        """Choose the forms that predict best, even if the misfit is already insignificant."""
-        fuller = [one for one in self._extended() if one.predicts_better(self.best)]
-        self.best = max([self.best, *fuller], key=lambda one: one.elpd)
-
-    def _substitute(self) -> None:
-        """Try other explanations of the drive's own recording beside the rest of the answer."""
-        every = {choice.name for choices, _ in self._upstream for choice in choices}
-        rest = [choice for choice in self.best.choices if choice.name not in every]
-        if len(rest) < len(self.best.choices):
-            best = self.best
-            asked = [((*rest, *some), values) for some, values in self._upstream]
-            others = [self._asked(x, [v], best) for x, v in asked if {*x} != {*best.choices}]
-            self.best = _best((best, *others)) or best
+        if (parent, key) not in self._compared:
+            self._compared.add((parent, key))
+            known = self.tried.get(key)
+            if known is None:
+                return self.fitted(key, guesses, parent)
+            again = fitted(self.model, key, parent.fit, guesses, known.fit)
+            if not again.given_up and again.fit.deviance < known.fit.deviance:
+                self.tried[key] = again
+        return self.tried[key]
 
     def _contest(self) -> None:
         """Try the lookalikes of the answer's effects in their place: an effect imitates the one
@@ -348,26 +328,13 @@ class Selection:
             if one.choices and not one.given_up and not self.best.predicts_better(one)
         ]
 
-    def _simplest(self) -> Candidate:
-        """Of the candidates that predict about as well as the best, one with the fewest effects,
-        then with the likeliest ones, then with the fewest quantities."""
-        alike = [one for one in self.alike() if self.complete(one) or one is self.best]
-        weighted = self.weighted
-
-        def rank(one: Candidate) -> tuple[float, ...]:
-            likely = sum(w for other, w in weighted if other.effects == one.effects)
-            return len(one.effects), -likely, len(one.fit.problem.quantities), -one.elpd
-
-        return min((self.best, *alike), key=rank)
-
     def _backward(self, needed: Callable[[Candidate, Candidate], bool]) -> None:
         """Drop effects, or parts, that the full set can spare: two may be needed only jointly."""
         whole = self.best
         while self.best.choices:
             spare = [one for one in self._fewer(self.best) if not needed(whole, one)]
-            fewer = [self._ended(one) if one.given_up else one for one in spare]
             simpler = (one for one in self._simpler(self.best) if not whole.predicts_better(one))
-            best = _best(fewer) or _best(simpler)
+            best = _best(spare) or _best(simpler)
             if best is None:
                 return
             self.best = best
@@ -384,31 +351,11 @@ class Selection:
             else:
                 yield self._asked(part, [{}], whole)
 
-    def _again(
-        self, candidate: Candidate, start: Candidate, guesses: Sequence[Mapping[str, float]]
-    ) -> Candidate:
-        """A candidate or, if that fits better, the same from the values of another one and from
-        guesses, unless it was compared before."""
-        key = candidate.choices
-        if (start, key) not in self._compared:
-            self._compared.add((start, key))
-            again = fitted(self.model, key, start.fit, guesses, candidate.fit)
-            if not again.given_up and again.fit.deviance < candidate.fit.deviance:
-                self.tried[key] = candidate = again
-        return candidate
-
     def _simpler(self, candidate: Candidate) -> Iterator[Candidate]:
         for choice in candidate.choices:
             rest = [c for c in candidate.choices if c is not choice]
             for form, _ in self._forms(choice, fuller=False):
-                one = self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
-                yield self._ended(one) if one.given_up else one
-
-    def _ended(self, part: Candidate) -> Candidate:
-        """A part that was given up, fitted to the end: it need not fit as well as the whole."""
-        key = part.choices
-        self.tried[key] = fitted(self.model, key, part.fit, [{}])
-        return self.tried[key]
+                yield self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
 
     def _forms(self, choice: Choice, *, fuller: bool) -> Iterator[tuple[int, set[str]]]:
         """The next larger, or smaller, forms of an effect, and the present form's quantities."""
