@@ -1,6 +1,6 @@
 """Backward steps: what two effects account for together is not lost by dropping one at a time."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -127,3 +127,17 @@ def test_what_the_motion_does_not_show_goes_before_more_is_sought():
 
     with pytest.raises(LookupError, match=r"\('a',\)"):
         Looking().run()
+
+
+def test_a_part_that_is_enough_is_taken_to_its_end(monkeypatch):
+    """It need not predict as well as the whole, by which it was given up."""
+
+    class GivingUp(Dropping):
+        def _fewer(self, candidate) -> Any:
+            return (replace(one, given_up=True) for one in super()._fewer(candidate))
+
+    selection = GivingUp()
+    selection.tried, selection.model = {}, None  # pyright: ignore
+    monkeypatch.setattr("rr_opt.sysid.selection.fitted", lambda _, key, *__: MADE[key])
+    selection._backward(lambda _, part: part.excess > 7.6)
+    assert selection.best == selection.tried[("a",)] == MADE[("a",)]  # pyright: ignore

@@ -110,8 +110,9 @@ def fitted(
 ) -> Candidate:
     """Fit a set of effects, starting from a fit without them.
 
-    guesses  initial values of the new quantities; the others start from the parent's fit. The best
-             after one step are continued, half of them after each further step
+    guesses  initial values of the new quantities. The parameters start from the parent's fit;
+             with the best guess also, as a missing effect may have biased that, from their nominal
+             values. The best after one step are continued, half of them after each further step
     rival    the fit to beat: one that will not beat it is stopped early
     """
     ordered = tuple(sorted(choices))
@@ -119,6 +120,7 @@ def fitted(
     names, quantities = problem.effects, problem.quantities
     plain = {q.name: q.centre for q in quantities}
     kept = {k: v for k, v in parent.values.items() if k in plain}
+    unbent = {q.name: q.centre for q in model.parameters}
     some, tolerance = trial_problem(problem, parent), SETTINGS.search_tolerance
 
     def begun(values: Mapping[str, float]) -> tuple[Fit, dict[Segment, Array]]:
@@ -134,6 +136,8 @@ def fitted(
 
     distinct = [one for k, one in enumerate(guesses) if one not in guesses[:k]]
     trials = [begun({**plain, **kept, **guess}) for guess in distinct]
+    k = min(range(len(trials)), key=lambda k: deviance(trials[k]))
+    trials[k] = min(trials[k], begun({**plain, **kept, **distinct[k], **unbent}), key=deviance)
     trials.sort(key=deviance)
     before = trials[0][0].deviance
     trials, left = trials[: SETTINGS.trial_starts], SETTINGS.trial_steps

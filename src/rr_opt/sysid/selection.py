@@ -334,7 +334,8 @@ class Selection:
         while self.best.choices:
             spare = [one for one in self._fewer(self.best) if not needed(whole, one)]
             simpler = (one for one in self._simpler(self.best) if not whole.predicts_better(one))
-            best = _best(spare) or _best(simpler)
+            fewer = [self._ended(one) if one.given_up else one for one in spare]
+            best = _best(fewer) or _best(simpler)
             if best is None:
                 return
             self.best = best
@@ -356,6 +357,11 @@ class Selection:
             rest = [c for c in candidate.choices if c is not choice]
             for form, _ in self._forms(choice, fuller=False):
                 yield self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
+
+    def _ended(self, part: Candidate) -> Candidate:
+        """A part that was given up, fitted to the end: it need not fit as well as the whole."""
+        self.tried[part.choices] = fitted(self.model, part.choices, part.fit, [{}])
+        return self.tried[part.choices]
 
     def _forms(self, choice: Choice, *, fuller: bool) -> Iterator[tuple[int, set[str]]]:
         """The next larger, or smaller, forms of an effect, and the present form's quantities."""
