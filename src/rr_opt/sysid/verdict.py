@@ -126,7 +126,10 @@ class Identification:
             return " ".join(self._hints())
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
         if not best.effects:
-            return ""
+            return (
+                "No effect predicts the recordings better than the nominal model, which leaves "
+                f"{best.excess:.1f} sigma beyond the noise in the fitted ones. {_LOOK}"
+            )
         reasons = {
             _DISAGREE if self._disagree else _SO_MANY: self._constant,
             _EXCEEDS: self._as_machines_differ,
