@@ -29,7 +29,7 @@ from types import MappingProxyType
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from rr_opt.sysid.estimation import Fit, FitProblem, root, summed
+from rr_opt.sysid.estimation import Fit, overdispersion, root, summed
 from rr_opt.sysid.settings import SETTINGS
 
 
@@ -54,11 +54,6 @@ class Constancy:
     def probability(self) -> float:
         """Probability that the values are constant."""
         return self.odds / (1 + self.odds)
-
-
-def overdispersion(problem: FitProblem, run: int, off: float) -> float:
-    """phi of a run whose motion deviates by `off`, mean square in sigma."""
-    return 1 + off * problem.samples[run] / problem.correlation_times(run)
 
 
 _NONE: Mapping = MappingProxyType({})
@@ -99,7 +94,7 @@ def constancy(
     for run, one in fit.evidences.items():
         B[run] = within(within(one.H[free][:, free]).T)
         off = share**2 * explained.get(run, 0.0) + min(left, problem.model.form_error) ** 2
-        phi[run] = overdispersion(problem, run, off)
+        phi[run] = overdispersion(problem, run, off * problem.samples[run])
     unit = np.eye(len(H))
     every = unit + sum(((phi[run] - 1) * B[run] for run in B), np.zeros_like(H))
     statistic, degrees = 0.0, 0

@@ -357,7 +357,7 @@ class Linear:
             misfit = float(value[k] + g_own @ shift)
             excess, weight = misfit - n, 1.0
             if problem.robust:
-                weight = 1 / (1 + max(excess / problem.correlation_times(run), 0.0))
+                weight = 1 / overdispersion(problem, run, excess)
             yield Evidence(
                 *(n, excess, problem.loss(run, misfit), float(log[k])),
                 weight * (g_shared[k] + follow.T @ g_own),
@@ -546,6 +546,12 @@ def solve(
         if lacking > SETTINGS.patience * max(gain, expected):
             break
     return Fit(problem, problem.valued(here.u), here.states, linear, evidences, converged)
+
+
+def overdispersion(problem: FitProblem, run: int, beyond: float) -> float:
+    """phi of a run that misfits by a sum of squares beyond the noise, which counts as constant over
+    a correlation time."""
+    return 1 + max(beyond, 0.0) / problem.correlation_times(run)
 
 
 def summed(

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc, chdtri
 
-from rr_opt.sysid.constancy import overdispersion
 from rr_opt.sysid.diagnosis import Curve, Residue, Stage
-from rr_opt.sysid.estimation import Fit, Linear
+from rr_opt.sysid.estimation import Fit, Linear, overdispersion
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Segment
 from rr_opt.sysid.score_test import ScoreTest
@@ -74,11 +73,11 @@ def dependences(
     test = ScoreTest.of(Linear(fit.problem, fit.linear.made, parts, fit.states), fit.values, nq)
     beyond = max(sum(e.value - e.samples for e in fit.evidences.values()), 1.0)
     # Beyond the misfit that there is, which the robust loss allows for.
-    problem, form_error = fit.problem, fit.problem.model.form_error
-    allowed = {
-        k: 1 + max(e.excess, 0) / problem.correlation_times(k) for k, e in fit.evidences.items()
-    }
-    ratios = [overdispersion(problem, k, form_error**2) / phi for k, phi in allowed.items()]
+    problem, off = fit.problem, fit.problem.model.form_error**2
+    ratios = [
+        overdispersion(problem, k, off * problem.samples[k]) / overdispersion(problem, k, e.excess)
+        for k, e in fit.evidences.items()
+    ]
     phi = float(np.mean(np.maximum(ratios, 1.0)))
     out = []
     for term in terms:

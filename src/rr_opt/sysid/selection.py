@@ -333,8 +333,8 @@ class Selection:
         whole = self.best
         while self.best.choices:
             spare = [one for one in self._fewer(self.best) if not needed(whole, one)]
-            simpler = (one for one in self._simpler(self.best) if not whole.predicts_better(one))
             fewer = [self._ended(one) if one.given_up else one for one in spare]
+            simpler = (one for one in self._simpler(self.best) if not whole.predicts_better(one))
             best = _best(fewer) or _best(simpler)
             if best is None:
                 return

@@ -16,8 +16,9 @@ from scipy.special import expit
 from rr_opt.formatting import words_of
 from rr_opt.messages import listed
 from rr_opt.sysid.candidates import Candidate
-from rr_opt.sysid.constancy import Constancy, constancy, overdispersion
+from rr_opt.sysid.constancy import Constancy, constancy
 from rr_opt.sysid.diagnosis import Estimate, Finding, Remainder, Tie, Tried, Verdict
+from rr_opt.sysid.estimation import overdispersion
 from rr_opt.sysid.evaluation import Evaluation
 from rr_opt.sysid.intervals import estimates, instead_of, joint, wrong
 from rr_opt.sysid.model import Choice
@@ -174,7 +175,7 @@ class Identification:
         odds = SETTINGS.evidence
         for k in held:
             off = self._form_error**2 * self._explained[k] + model.form_error**2
-            odds += (own[k] - other[k]) / overdispersion(problem, k, off)
+            odds += (own[k] - other[k]) / overdispersion(problem, k, off * problem.samples[k])
         return float(expit(odds))
 
     @property
